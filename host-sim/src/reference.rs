@@ -1,0 +1,15 @@
+//! The independent reference: Virtual Muscle 4.0 in `f64`, written from the paper.
+//!
+//! It shares no code with `vm-nostd`, and a test keeps it so: two implementations that share
+//! code share bugs. Symbols are the paper's, so that a line here can be held against the page.
+//!
+//! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184.
+
+mod elements;
+mod muscle;
+mod recruitment;
+mod simulation;
+
+pub use muscle::{Elements, Fiber, FiberType, Muscle, Sag, Yielding};
+pub use recruitment::Mode;
+pub use simulation::{Input, Sample, Simulation, SolverError};

@@ -1,0 +1,250 @@
+//! Integration of the model over ticks, by an adaptive Dormand-Prince 5(4) pair restarted at
+//! every tick: inputs jump there, and an implicit method with a finite-difference Jacobian
+//! started on the kink f_int = f_eff takes an infinite slope (see the design's numerics).
+
+use super::elements as element;
+use super::muscle::Muscle;
+use super::recruitment::{self, Mode};
+use ode_solvers::dop_shared::{IntegrationError, OutputType, System};
+use ode_solvers::{DVector, Dopri5};
+
+/// Inputs of a tick that ends at the sample's time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Input {
+    /// U, 0..1, in force during the tick.
+    pub activation: f64,
+    /// L_mt at the end of the tick, m; linear from the previous tick's.
+    pub path_length: f64,
+    /// f_stim, pps, in force during the tick (FES).
+    pub stimulation_frequency: f64,
+}
+
+/// What a tick yields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Tendon force, N.
+    pub force: f64,
+    /// L, L_ce0.
+    pub fascicle_length: f64,
+    /// V, L_ce0/s.
+    pub fascicle_velocity: f64,
+}
+
+/// The integrator gave up.
+#[derive(Debug, thiserror::Error)]
+#[error("the reference integrator stopped in tick {tick}: {source}")]
+pub struct SolverError {
+    /// Tick, counted from 1.
+    pub tick: u64,
+    /// What the solver said.
+    pub source: IntegrationError,
+}
+
+/// Error per step that the integrator may commit, relative and absolute (in L_ce0, f0.5, ...).
+const TOLERANCE: f64 = 1e-9;
+/// Steps that one tick may take before the integrator gives up.
+const MOST_STEPS: u32 = 200_000;
+
+// Layout of the state vector: L, V, U_eff, then four per type.
+const L: usize = 0;
+const V: usize = 1;
+const U_EFF: usize = 2;
+const FIRST_TYPE: usize = 3;
+const PER_TYPE: usize = 4;
+const F_INT: usize = 0;
+const F_EFF: usize = 1;
+const Y: usize = 2;
+const S: usize = 3;
+
+/// A muscle being simulated.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    muscle: Muscle,
+    mode: Mode,
+    time_step: f64,
+    state: DVector<f64>,
+    path_length: f64,
+    first_step: f64,
+    tick: u64,
+}
+
+impl Simulation {
+    /// A muscle at rest at `path_length` (m), to be stepped by `time_step` (s).
+    pub fn at_rest(muscle: Muscle, mode: Mode, time_step: f64, path_length: f64) -> Self {
+        let mut state = DVector::zeros(FIRST_TYPE + PER_TYPE * muscle.fibers.len());
+        state[L] = resting_length(&muscle, path_length);
+        for (i, fiber) in muscle.fibers.iter().enumerate() {
+            let at = FIRST_TYPE + PER_TYPE * i;
+            state[at + Y] = 1.0;
+            state[at + S] = fiber.fiber_type.sag.map_or(1.0, |sag| sag.aS1);
+        }
+        Self {
+            muscle,
+            mode,
+            time_step,
+            state,
+            path_length,
+            first_step: 0.0,
+            tick: 0,
+        }
+    }
+
+    /// The state as a sample.
+    pub fn sample(&self) -> Sample {
+        let e = &self.muscle.elements;
+        Sample {
+            force: self.muscle.f0() * element::tendon(e, self.tendon_length(self.path_length)),
+            fascicle_length: self.state[L],
+            fascicle_velocity: self.state[V],
+        }
+    }
+
+    fn tendon_length(&self, path_length: f64) -> f64 {
+        (path_length - self.state[L] * self.muscle.L_ce0) / self.muscle.L_se0
+    }
+
+    /// Steps one tick.
+    pub fn step(&mut self, input: Input) -> Result<Sample, SolverError> {
+        let u = input.activation.clamp(0.0, 1.0);
+        let tick = Tick {
+            muscle: &self.muscle,
+            mode: self.mode,
+            l_max: self.muscle.maximum_fascicle_length(),
+            acceleration: self.muscle.f0() / (0.5 * self.muscle.mass * self.muscle.L_ce0),
+            thresholds: self.muscle.recruitment_thresholds(),
+            f_env: recruitment::firing_frequencies(
+                &self.muscle,
+                self.mode,
+                u,
+                input.stimulation_frequency,
+            ),
+            u,
+            path_start: self.path_length,
+            path_rate: (input.path_length - self.path_length) / self.time_step,
+        };
+        let mut stepper = Dopri5::from_param(
+            tick,
+            0.0,
+            self.time_step,
+            self.time_step,
+            self.state.clone(),
+            TOLERANCE,
+            TOLERANCE,
+            0.9,
+            0.04,
+            0.2,
+            10.0,
+            self.time_step,
+            self.first_step,
+            MOST_STEPS,
+            MOST_STEPS, // the stiffness test would only refuse what small steps can do
+            OutputType::Sparse,
+        );
+        self.tick += 1;
+        stepper.integrate().map_err(|source| SolverError {
+            tick: self.tick,
+            source,
+        })?;
+        let times = stepper.x_out();
+        // The last step is cut to end with the tick; the one before tells the size to go on with.
+        self.first_step = match times.as_slice() {
+            [.., a, b, _] => b - a,
+            _ => 0.0,
+        };
+        if let Some(state) = stepper.y_out().last() {
+            self.state.clone_from(state);
+        }
+        self.path_length = input.path_length;
+        Ok(self.sample())
+    }
+}
+
+/// Passive equilibrium F_se = F_pe1 by bisection: the difference falls monotonically with L.
+fn resting_length(muscle: &Muscle, path_length: f64) -> f64 {
+    let e = &muscle.elements;
+    let l_max = muscle.maximum_fascicle_length();
+    let (mut low, mut high) = (0.0, path_length / muscle.L_ce0);
+    while high - low > 1e-14 * high {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        let tendon = element::tendon(e, (path_length - middle * muscle.L_ce0) / muscle.L_se0);
+        if tendon > element::parallel_elastic(e, middle, l_max, 0.0) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// The right-hand side during one tick.
+struct Tick<'a> {
+    muscle: &'a Muscle,
+    mode: Mode,
+    l_max: f64,
+    acceleration: f64,
+    thresholds: Vec<f64>,
+    f_env: Vec<f64>,
+    u: f64,
+    path_start: f64,
+    path_rate: f64,
+}
+
+impl System<f64, DVector<f64>> for Tick<'_> {
+    fn system(&self, time: f64, y: &DVector<f64>, dy: &mut DVector<f64>) {
+        let m = self.muscle;
+        let e = &m.elements;
+        let (l, v, u_eff) = (y[L], y[V], y[U_EFF]);
+        let weights = recruitment::weights(&self.thresholds, u_eff);
+        let mut force_of_filaments = 0.0;
+        let mut force_of_compression = 0.0;
+        for (i, fiber) in m.fibers.iter().enumerate() {
+            let t = &fiber.fiber_type;
+            let at = FIRST_TYPE + PER_TYPE * i;
+            let (f_int, f_eff) = (y[at + F_INT], y[at + F_EFF]);
+            let f_env = self.f_env[i];
+            let rising = f_int >= f_eff;
+            // The frequency that acts on the filaments, what drives the chain of excitation,
+            // whether the type sags, and the weights of the two kinds of force.
+            let (f, drive, sagging, weight, compression_weight) = match self.mode {
+                Mode::Continuous => {
+                    let weight = u_eff * weights[i];
+                    (f_eff, f_env, f_eff >= 0.1, weight, weight)
+                }
+                Mode::Fes => (
+                    f_env,
+                    self.u,
+                    f_env > 0.1,
+                    f_eff * fiber.fraction,
+                    fiber.fraction,
+                ),
+            };
+            let af = element::activation_frequency(t, f, l, y[at + Y], y[at + S]);
+            let slowing = match self.mode {
+                Mode::Continuous => af,
+                Mode::Fes => f64::from(u8::from(self.u > 0.0)),
+            };
+            let time_constant = element::excitation_time(t, rising, l, f_env, slowing);
+            dy[at + F_INT] = (drive - f_int) / time_constant;
+            dy[at + F_EFF] = (f_int - f_eff) / time_constant;
+            dy[at + Y] = element::yielding_rate(t, y[at + Y], v);
+            dy[at + S] = element::sag_rate(t, y[at + S], sagging);
+            force_of_filaments +=
+                weight * af * element::force_length(t, l) * element::force_velocity(t, l, v);
+            force_of_compression += compression_weight * af * element::compression(e, l);
+        }
+        let passive = element::parallel_elastic(e, l, self.l_max, v) + force_of_compression;
+        let contractile = match self.mode {
+            Mode::Continuous => passive + force_of_filaments,
+            Mode::Fes => passive.max(0.0) + force_of_filaments,
+        }
+        .max(0.0);
+        let path = self.path_start + self.path_rate * time;
+        let tendon = element::tendon(e, (path - l * m.L_ce0) / m.L_se0);
+        dy[L] = v;
+        dy[V] = self.acceleration * (tendon - contractile);
+        dy[U_EFF] = recruitment::effective_activation_rate(self.u, u_eff);
+    }
+}

@@ -1,0 +1,107 @@
+//! Activation-frequency relation: Af = 1 - exp(-(Y S f/(af n_f))^n_f),
+//! n_f = nf0 + nf1 (1/L - 1).
+
+use crate::error::{ParameterError, within};
+use crate::scalar::Scalar;
+
+/// Coefficients of Af.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActivationParams {
+    /// a_f, f0.5; 0.05 to 10.
+    #[doc(alias = "af")]
+    pub scale: f64,
+    /// n_f0; 0.5 to 10.
+    #[doc(alias = "nf0")]
+    pub exponent: f64,
+    /// n_f1; 0 to 20.
+    #[doc(alias = "nf1")]
+    pub length_dependence: f64,
+}
+
+/// The smallest n_f used: below, Af loses its meaning, and at 0 it is undefined.
+const LEAST_EXPONENT: f64 = 0.2;
+
+impl ActivationParams {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        within("activation.scale", self.scale, 0.05, 10.0)?;
+        within("activation.exponent", self.exponent, 0.5, 10.0)?;
+        within(
+            "activation.length_dependence",
+            self.length_dependence,
+            0.0,
+            20.0,
+        )
+    }
+
+    /// The longest fascicle length, in L_ce0 and not above `most`, at which n_f is still defined.
+    pub(crate) fn longest_length(&self, most: f64) -> f64 {
+        let reciprocal = 1.0 + (LEAST_EXPONENT - self.exponent) / self.length_dependence;
+        // Without dependence on length the reciprocal is minus infinity: no limit.
+        if reciprocal > 1.0 / most {
+            1.0 / reciprocal
+        } else {
+            most
+        }
+    }
+}
+
+/// Af of one fibre type.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActivationFrequency<S> {
+    /// nf0 - nf1 and nf1.
+    exponent: [S; 2],
+    scale: S,
+    /// Keeps the logarithm in its domain; Af is 0 there to the last bit.
+    least: S,
+}
+
+/// Af at one fascicle length, ready for any frequency.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActivationCurve<S> {
+    exponent: S,
+    /// dn_f/dL, 1/L_ce0.
+    exponent_slope: S,
+    /// 1/(af n_f).
+    per_scale: S,
+    least: S,
+}
+
+impl<S: Scalar> ActivationFrequency<S> {
+    pub(crate) fn new(params: &ActivationParams) -> Self {
+        Self {
+            exponent: [
+                S::from_f64(params.exponent - params.length_dependence),
+                S::from_f64(params.length_dependence),
+            ],
+            scale: S::from_f64(params.scale),
+            least: S::from_f64(1e-9),
+        }
+    }
+
+    /// The curve at the fascicle length whose reciprocal is given.
+    pub(crate) fn at(&self, reciprocal: S) -> ActivationCurve<S> {
+        let [constant, slope] = self.exponent;
+        let exponent = constant + slope * reciprocal;
+        ActivationCurve {
+            exponent,
+            exponent_slope: -(slope * reciprocal * reciprocal),
+            per_scale: S::ONE / (self.scale * exponent),
+            least: self.least,
+        }
+    }
+}
+
+impl<S: Scalar> ActivationCurve<S> {
+    /// Af for an effective frequency Y S f (f0.5, at least 0), and how much Af changes while
+    /// that frequency changes by `frequency_change` and the fascicle by `length_change` (L_ce0).
+    pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> (S, S) {
+        let inside = frequency.max(self.least);
+        let logarithm = (inside * self.per_scale).ln();
+        let power = (self.exponent * logarithm).exp();
+        let remainder = (-power).exp();
+        // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
+        let change = self.exponent * frequency_change / inside
+            + (logarithm - S::ONE) * self.exponent_slope * length_change;
+        (S::ONE - remainder, remainder * power * change)
+    }
+}

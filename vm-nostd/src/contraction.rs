@@ -1,0 +1,219 @@
+//! The mechanics: a mass between tendon and fascicles,
+//! (m/2) d²x/dt² = F0 (F_se - F_ce'), x = L L_ce0.
+//!
+//! Active, the fascicles follow the tendon within 10 to 50 µs; passive, they ring on it at some
+//! 400 Hz. An L-stable, singly diagonally implicit Runge-Kutta pair of stages (gamma = 1 - 1/√2)
+//! is sound in both, with the tendon kept nonlinear. Each stage is one scalar equation in V, its
+//! residual rising with V, so that the residual's sign at V = 0 tells the sign of the root and
+//! with it the branch of FV; Newton steps on that branch need no search and no loop that depends
+//! on the data.
+
+use crate::domain::{Domain, MAXIMUM_SPEED};
+use crate::force_velocity::VelocityCurve;
+use crate::params::MuscleParams;
+use crate::recruitment::Course;
+use crate::scalar::Scalar;
+use crate::tendon::Tendon;
+use crate::time_step::TimeStep;
+
+/// gamma = 1 - 1/√2.
+const GAMMA: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
+/// Longest substep of the mechanics, s.
+const LONGEST_SUBSTEP: f64 = 0.25e-3;
+/// Newton steps per stage, after the branch is known.
+const NEWTON_STEPS: usize = 2;
+
+/// Length and velocity of the fascicles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<S> {
+    /// L_ce0.
+    pub(crate) length: S,
+    /// L_ce0/s.
+    pub(crate) velocity: S,
+}
+
+/// The contractile element during one tick:
+/// F_ce' = max(0, passive + Σ gain_i FV_i), forces in F0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contractile<S, const N: usize> {
+    /// What multiplies FV of each type.
+    pub(crate) gains: [Course<S>; N],
+    /// FV of each type.
+    pub(crate) curves: [VelocityCurve<S>; N],
+    /// Passive force at `length` and V = 0.
+    pub(crate) passive: Course<S>,
+    /// Its slope, F0/L_ce0.
+    pub(crate) passive_slope: S,
+    /// Fascicle length at which the passive force was taken, L_ce0.
+    pub(crate) length: S,
+    /// The least that the passive force may be, F0.
+    pub(crate) passive_floor: S,
+}
+
+/// Coefficients of the implicit step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contraction<S> {
+    pub(crate) tendon: Tendon<S>,
+    /// eta, F0 s/L_ce0.
+    viscosity: S,
+    substeps: u8,
+    /// A substep as a share of the tick.
+    share: S,
+    /// gamma times a substep, s, and as a share of the tick.
+    gamma_time: S,
+    gamma_share: S,
+    /// (1 - gamma)/gamma, and that times gamma_time, s.
+    carry: S,
+    carry_time: S,
+    /// Mass over gamma_time, F0 s/L_ce0.
+    inertia: S,
+    half: S,
+    speed: S,
+}
+
+impl<S: Scalar> Contraction<S> {
+    pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
+        let substeps = libm::ceil(step.seconds() / LONGEST_SUBSTEP - 1e-9);
+        let gamma_time = GAMMA * step.seconds() / substeps;
+        let carry = (1.0 - GAMMA) / GAMMA;
+        let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
+        let tendon = Tendon::new(
+            &params.elements.tendon,
+            params.fascicle_length,
+            params.tendon_length,
+        );
+        Self {
+            tendon,
+            viscosity: S::from_f64(params.elements.parallel.viscosity),
+            substeps: substeps as u8,
+            share: S::from_f64(1.0 / substeps),
+            gamma_time: S::from_f64(gamma_time),
+            gamma_share: S::from_f64(GAMMA / substeps),
+            carry: S::from_f64(carry),
+            carry_time: S::from_f64(carry * gamma_time),
+            inertia: S::from_f64(mass / gamma_time),
+            half: S::from_f64(0.5),
+            speed: S::from_f64(MAXIMUM_SPEED),
+        }
+    }
+
+    /// One tick, in which the tendon's `reach` goes linearly through its course.
+    pub(crate) fn advance<const N: usize>(
+        &self,
+        start: Motion<S>,
+        reach: Course<S>,
+        contractile: &Contractile<S, N>,
+    ) -> Motion<S> {
+        let mut motion = start;
+        // Time since the tick's middle, in ticks.
+        let mut time = -self.half;
+        for _ in 0..self.substeps {
+            let first = self.stage(
+                motion,
+                time + self.gamma_share,
+                reach,
+                contractile,
+                motion.velocity,
+            );
+            let carried = Motion {
+                length: motion.length + self.carry_time * first.velocity,
+                velocity: motion.velocity + self.carry * (first.velocity - motion.velocity),
+            };
+            time = time + self.share;
+            motion = self.stage(carried, time, reach, contractile, first.velocity);
+        }
+        motion
+    }
+
+    /// One implicit stage at `time` from `base`: L = L_b + gamma h V, V = V_b + gamma h dV/dt.
+    fn stage<const N: usize>(
+        &self,
+        base: Motion<S>,
+        time: S,
+        reach: Course<S>,
+        contractile: &Contractile<S, N>,
+        guess: S,
+    ) -> Motion<S> {
+        let stage = Stage {
+            contraction: self,
+            base,
+            reach: reach.middle + reach.change * time,
+            gains: contractile
+                .gains
+                .map(|gain| gain.middle + gain.change * time),
+            passive: contractile.passive.middle
+                + contractile.passive.change * time
+                + contractile.passive_slope * (base.length - contractile.length),
+            contractile,
+        };
+        let (at_zero, _) = stage.residual(true, S::ZERO);
+        let lengthening = at_zero < S::ZERO;
+        let mut velocity = if (guess > S::ZERO) == lengthening {
+            guess
+        } else {
+            S::ZERO
+        };
+        for _ in 0..NEWTON_STEPS {
+            let (residual, slope) = stage.residual(lengthening, velocity);
+            let next = velocity - residual / slope;
+            velocity = if lengthening {
+                next.max(S::ZERO).min(self.speed)
+            } else {
+                next.min(S::ZERO).max(-self.speed)
+            };
+        }
+        Motion {
+            length: base.length + self.gamma_time * velocity,
+            velocity,
+        }
+    }
+}
+
+/// One stage's equation: inertia (V - V_b) + F_ce'(V) - F_se(L_b + gamma h V) = 0.
+struct Stage<'a, S, const N: usize> {
+    contraction: &'a Contraction<S>,
+    contractile: &'a Contractile<S, N>,
+    base: Motion<S>,
+    reach: S,
+    gains: [S; N],
+    passive: S,
+}
+
+impl<S: Scalar, const N: usize> Stage<'_, S, N> {
+    /// The residual (F0) and its slope by V, always positive, on one branch of FV.
+    fn residual(&self, lengthening: bool, velocity: S) -> (S, S) {
+        let c = self.contraction;
+        let (mut force, mut slope) = (self.passive, S::ZERO);
+        let resistance = c.viscosity + self.contractile.passive_slope * c.gamma_time;
+        force = force + resistance * velocity;
+        if force > self.contractile.passive_floor {
+            slope = resistance;
+        } else {
+            force = self.contractile.passive_floor;
+        }
+        for (gain, curve) in self.gains.iter().zip(&self.contractile.curves) {
+            let (value, steepness) = curve.at(lengthening, velocity);
+            force = force + *gain * value;
+            slope = slope + *gain * steepness;
+        }
+        if force < S::ZERO {
+            (force, slope) = (S::ZERO, S::ZERO);
+        }
+        let length = self.base.length + c.gamma_time * velocity;
+        let (pull, stiffness) = c.tendon.pull(self.reach, length);
+        (
+            c.inertia * (velocity - self.base.velocity) + force - pull,
+            c.inertia + slope + stiffness * c.gamma_time,
+        )
+    }
+}
+
+/// Keeps a motion inside the state's domain; says whether length and velocity were inside.
+pub(crate) fn confine<S: Scalar>(motion: Motion<S>, domain: &Domain<S>) -> (Motion<S>, bool, bool) {
+    let (length, stopped) = domain.fascicle_length.clip(motion.length);
+    let (velocity, _) = domain.fascicle_velocity.clip(motion.velocity);
+    let held =
+        velocity >= domain.fascicle_velocity.most || velocity <= domain.fascicle_velocity.least;
+    let velocity = if stopped { S::ZERO } else { velocity };
+    (Motion { length, velocity }, stopped, held)
+}

@@ -1,0 +1,144 @@
+//! Where inputs and state must stay, and the flags that say when they had to be kept there.
+
+use crate::muscle::Input;
+use crate::params::MuscleParams;
+use crate::scalar::Scalar;
+
+bitflags::bitflags! {
+    /// What a tick had to saturate; empty when inputs and state were inside the domain.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub struct Status: u16 {
+        /// Activation was outside 0..1 and was clipped.
+        const ACTIVATION_CLIPPED = 1 << 0;
+        /// Activation was not a number (taken as 0) or infinite (clipped).
+        const ACTIVATION_NOT_FINITE = 1 << 1;
+        /// Stimulation frequency was outside 0..500 pps and was clipped.
+        const FREQUENCY_CLIPPED = 1 << 2;
+        /// Stimulation frequency was not a number (taken as 0) or infinite (clipped).
+        const FREQUENCY_NOT_FINITE = 1 << 3;
+        /// Path length was outside the muscle's range and was clipped.
+        const PATH_LENGTH_CLIPPED = 1 << 4;
+        /// Path length was not a number (the one before was kept) or infinite (clipped).
+        const PATH_LENGTH_NOT_FINITE = 1 << 5;
+        /// The fascicles left the range in which force-length, force-velocity and
+        /// activation-frequency relation hold; those were taken at its edge.
+        const FASCICLE_OUTSIDE_DOMAIN = 1 << 6;
+        /// The fascicles were stopped at the least or greatest length the state can have.
+        const FASCICLE_LENGTH_LIMITED = 1 << 7;
+        /// The fascicles were held at the greatest speed the state can have, 60 L_ce0/s.
+        const FASCICLE_VELOCITY_LIMITED = 1 << 8;
+    }
+}
+
+/// Greatest stimulation frequency, pps.
+pub(crate) const MAXIMUM_STIMULATION_FREQUENCY: f64 = 500.0;
+/// Greatest fascicle speed, L_ce0/s.
+pub(crate) const MAXIMUM_SPEED: f64 = 60.0;
+
+/// A closed range.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range<S> {
+    pub(crate) least: S,
+    pub(crate) most: S,
+}
+
+impl<S: Scalar> Range<S> {
+    pub(crate) fn new((least, most): (f64, f64)) -> Self {
+        Self {
+            least: S::from_f64(least),
+            most: S::from_f64(most),
+        }
+    }
+
+    /// The nearest value in the range, and whether that is another one.
+    pub(crate) fn clip(&self, value: S) -> (S, bool) {
+        let clipped = value.max(self.least).min(self.most);
+        (clipped, clipped != value)
+    }
+
+    pub(crate) fn contains(&self, value: S) -> bool {
+        value >= self.least && value <= self.most
+    }
+}
+
+/// The stated domain of a muscle's inputs and state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Domain<S> {
+    pub(crate) activation: Range<S>,
+    pub(crate) stimulation_frequency: Range<S>,
+    /// m.
+    pub(crate) path_length: Range<S>,
+    /// Where the equations of the filaments hold, L_ce0.
+    pub(crate) filaments: Range<S>,
+    /// What the state can hold, L_ce0: from the shortest at which the equations hold to where
+    /// the longest path would leave no tendon.
+    pub(crate) fascicle_length: Range<S>,
+    /// L_ce0/s.
+    pub(crate) fascicle_velocity: Range<S>,
+}
+
+impl<S: Scalar> Domain<S> {
+    pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {
+        let filaments = params.fascicle_domain();
+        let longest = params.max_path_length / params.fascicle_length;
+        Self {
+            activation: Range::new((0.0, 1.0)),
+            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY)),
+            path_length: Range::new(params.path_domain()),
+            filaments: Range::new(filaments),
+            fascicle_length: Range::new((filaments.0, longest)),
+            fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED)),
+        }
+    }
+
+    /// The input as the model takes it, and what had to be changed.
+    pub(crate) fn admit(&self, input: Input<S>, path_before: S) -> (Input<S>, Status) {
+        let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO);
+        let (stimulation_frequency, f) = admit_one(
+            &self.stimulation_frequency,
+            input.stimulation_frequency,
+            S::ZERO,
+        );
+        let (path_length, p) = admit_one(&self.path_length, input.path_length, path_before);
+        let status = a.flags(Status::ACTIVATION_CLIPPED, Status::ACTIVATION_NOT_FINITE)
+            | f.flags(Status::FREQUENCY_CLIPPED, Status::FREQUENCY_NOT_FINITE)
+            | p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE);
+        (
+            Input {
+                activation,
+                path_length,
+                stimulation_frequency,
+            },
+            status,
+        )
+    }
+}
+
+/// What was wrong with an input.
+#[derive(Clone, Copy)]
+enum Admission {
+    AsIs,
+    Clipped,
+    NotFinite,
+}
+
+impl Admission {
+    fn flags(self, clipped: Status, not_finite: Status) -> Status {
+        match self {
+            Self::AsIs => Status::empty(),
+            Self::Clipped => clipped,
+            Self::NotFinite => not_finite,
+        }
+    }
+}
+
+fn admit_one<S: Scalar>(range: &Range<S>, value: S, instead: S) -> (S, Admission) {
+    let is_number = value.partial_cmp(&value).is_some();
+    let (clipped, changed) = range.clip(if is_number { value } else { instead });
+    let admission = match (value.is_finite(), changed) {
+        (false, _) => Admission::NotFinite,
+        (true, true) => Admission::Clipped,
+        (true, false) => Admission::AsIs,
+    };
+    (clipped, admission)
+}

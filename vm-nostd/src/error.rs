@@ -1,0 +1,91 @@
+//! Why a muscle is refused.
+
+use core::fmt;
+
+/// A parameter that was refused, with its value and the limit it broke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// The parameter, by the name of its field.
+    pub field: &'static str,
+    /// Which fibre type it belongs to, counted from 0; `None` for the muscle's own.
+    pub fiber: Option<usize>,
+    /// The refused value, in the field's unit.
+    pub value: f64,
+    /// The limit it broke.
+    pub limit: Limit,
+}
+
+/// What a parameter must be, in its field's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// A number between two bounds, both allowed.
+    Within {
+        /// Smallest value allowed.
+        least: f64,
+        /// Largest value allowed.
+        most: f64,
+    },
+    /// The fractions of all types must add to 1, within the given distance.
+    SumIsOne {
+        /// Largest distance from 1 allowed.
+        within: f64,
+    },
+    /// Types must be listed in order of rank: at least the rank before.
+    NotBefore {
+        /// The rank of the type before.
+        rank: f64,
+    },
+    /// A whole number of at least 1 was needed.
+    AtLeastOneType,
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Within { least, most } => write!(f, "must be between {least} and {most}"),
+            Self::SumIsOne { within } => {
+                write!(
+                    f,
+                    "the fractions of all types must add to 1 (within {within})"
+                )
+            }
+            Self::NotBefore { rank } => {
+                write!(
+                    f,
+                    "types are listed in order of rank, and the one before has {rank}"
+                )
+            }
+            Self::AtLeastOneType => f.write_str("a muscle has at least one fibre type"),
+        }
+    }
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(fiber) = self.fiber {
+            write!(f, "fibers[{fiber}].")?;
+        }
+        write!(f, "{} = {}: {}", self.field, self.value, self.limit)
+    }
+}
+
+impl core::error::Error for ParameterError {}
+
+/// Accepts `value` if it lies within the bounds; anything else, not-a-number included, is refused.
+pub(crate) fn within(
+    field: &'static str,
+    value: f64,
+    least: f64,
+    most: f64,
+) -> Result<(), ParameterError> {
+    if value >= least && value <= most {
+        Ok(())
+    } else {
+        Err(ParameterError {
+            field,
+            fiber: None,
+            value,
+            limit: Limit::Within { least, most },
+        })
+    }
+}

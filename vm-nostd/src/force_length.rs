@@ -1,0 +1,66 @@
+//! Force-length relation of the filaments: FL = exp(-|(L^beta - 1)/omega|^rho).
+
+use crate::error::{ParameterError, within};
+use crate::scalar::Scalar;
+
+/// Coefficients of FL.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceLengthParams {
+    /// Width omega; 0.1 to 10.
+    #[doc(alias = "omega")]
+    pub width: f64,
+    /// Skewness beta; 0.1 to 10.
+    #[doc(alias = "beta")]
+    pub skewness: f64,
+    /// Roundness rho; 1 to 10.
+    #[doc(alias = "rho")]
+    pub roundness: f64,
+}
+
+impl ForceLengthParams {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        within("force_length.width", self.width, 0.1, 10.0)?;
+        within("force_length.skewness", self.skewness, 0.1, 10.0)?;
+        within("force_length.roundness", self.roundness, 1.0, 10.0)
+    }
+}
+
+/// FL of one fibre type.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceLength<S> {
+    skewness: S,
+    roundness: S,
+    /// 1/omega.
+    per_width: S,
+    /// Keeps the logarithm in its domain; so near to the optimum FL is 1 to the last bit.
+    least: S,
+}
+
+impl<S: Scalar> ForceLength<S> {
+    pub(crate) fn new(params: &ForceLengthParams) -> Self {
+        Self {
+            skewness: S::from_f64(params.skewness),
+            roundness: S::from_f64(params.roundness),
+            per_width: S::from_f64(1.0 / params.width),
+            least: S::from_f64(1e-9),
+        }
+    }
+
+    /// FL (0..1) and its slope (1/L_ce0) from the fascicle length's logarithm and reciprocal.
+    pub(crate) fn at(&self, logarithm: S, reciprocal: S) -> (S, S) {
+        let power = (self.skewness * logarithm).exp();
+        let offset = (power - S::ONE) * self.per_width;
+        let distance = offset.abs().max(self.least);
+        let exponent = (self.roundness * distance.ln()).exp();
+        let value = (-exponent).exp();
+        // d|z|^rho/dL = rho |z|^rho / z * dz/dL, with dz/dL = beta L^beta / (L omega).
+        let signed = if offset < S::ZERO {
+            -distance
+        } else {
+            distance
+        };
+        let growth = self.roundness * exponent / signed
+            * (self.skewness * power * reciprocal * self.per_width);
+        (value, -(value * growth))
+    }
+}

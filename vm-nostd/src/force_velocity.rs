@@ -1,0 +1,164 @@
+//! Force-velocity relation of the filaments, hyperbolic on either side of V = 0.
+//!
+//! V <= 0: (Vmax - V)/(Vmax + (cV0 + cV1 L) V);
+//! V > 0: (bV - (aV0 + aV1 L + aV2 L²) V)/(bV + V).
+//!
+//! Both are (1 + n V)/(1 + d V), with n and d chosen by the sign of V.
+
+use crate::error::{ParameterError, within};
+use crate::scalar::Scalar;
+
+/// Coefficients of FV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceVelocityParams {
+    /// Velocity of unloaded shortening V_max, L_ce0/s; -100 to -0.1.
+    #[doc(alias = "Vmax")]
+    pub maximum_velocity: f64,
+    /// c_V0 and c_V1 of the shortening branch, each -100 to 100.
+    #[doc(alias = "cV0")]
+    pub shortening: [f64; 2],
+    /// a_V0, a_V1 and a_V2 of the lengthening branch, each -100 to 100.
+    #[doc(alias = "aV0")]
+    pub lengthening: [f64; 3],
+    /// b_V of the lengthening branch, L_ce0/s; 0.01 to 10.
+    #[doc(alias = "bV")]
+    pub lengthening_velocity: f64,
+}
+
+/// How far cV0 + cV1 L must stay above -1, where FV gets a pole inside |Vmax|.
+const POLE_MARGIN: f64 = 0.02;
+
+impl ForceVelocityParams {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        let v_max = self.maximum_velocity;
+        within("force_velocity.maximum_velocity", v_max, -100.0, -0.1)?;
+        for coefficient in self.shortening {
+            within("force_velocity.shortening", coefficient, -100.0, 100.0)?;
+        }
+        for coefficient in self.lengthening {
+            within("force_velocity.lengthening", coefficient, -100.0, 100.0)?;
+        }
+        within(
+            "force_velocity.lengthening_velocity",
+            self.lengthening_velocity,
+            0.01,
+            10.0,
+        )
+    }
+
+    /// The shortest fascicle length, in L_ce0 and not below `least`, from which the shortening
+    /// branch has no pole and rises with V.
+    pub(crate) fn shortest_length(&self, least: f64) -> f64 {
+        let [c0, c1] = self.shortening;
+        if c1 > 0.0 {
+            ((POLE_MARGIN - 1.0 - c0) / c1).max(least)
+        } else {
+            least
+        }
+    }
+
+    /// Refuses coefficients with which force would not rise with velocity somewhere between two
+    /// fascicle lengths: the sign of V could not be told from the forces there.
+    pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
+        let [c0, c1] = self.shortening;
+        let [a0, a1, a2] = self.lengthening;
+        let turning_point = if a2 == 0.0 {
+            least
+        } else {
+            (-0.5 * a1 / a2).clamp(least, most)
+        };
+        for length in [least, most, turning_point] {
+            within(
+                "force_velocity.shortening",
+                c0 + c1 * length,
+                POLE_MARGIN * 0.5 - 1.0,
+                300.0,
+            )?;
+            let a = a0 + a1 * length + a2 * length * length;
+            within("force_velocity.lengthening", a, -300.0, -1.0)?;
+        }
+        Ok(())
+    }
+}
+
+/// FV of one fibre type.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceVelocity<S> {
+    maximum_velocity: S,
+    /// 1/Vmax, cV0/Vmax, cV1/Vmax.
+    per_maximum: S,
+    shortening: [S; 2],
+    /// 1/bV and -aV0/bV, -aV1/bV, -aV2/bV.
+    per_lengthening: S,
+    lengthening: [S; 3],
+}
+
+impl<S: Scalar> ForceVelocity<S> {
+    pub(crate) fn new(params: &ForceVelocityParams) -> Self {
+        let v_max = params.maximum_velocity;
+        let b = params.lengthening_velocity;
+        Self {
+            maximum_velocity: S::from_f64(v_max),
+            per_maximum: S::from_f64(1.0 / v_max),
+            shortening: params.shortening.map(|c| S::from_f64(c / v_max)),
+            per_lengthening: S::from_f64(1.0 / b),
+            lengthening: params.lengthening.map(|a| S::from_f64(-a / b)),
+        }
+    }
+
+    /// The curve at a fascicle length in L_ce0.
+    pub(crate) fn at(&self, fascicle_length: S) -> VelocityCurve<S> {
+        let [c0, c1] = self.shortening;
+        let [a0, a1, a2] = self.lengthening;
+        VelocityCurve {
+            maximum_velocity: self.maximum_velocity,
+            shortening: Branch {
+                numerator: -self.per_maximum,
+                denominator: c0 + c1 * fascicle_length,
+            },
+            lengthening: Branch {
+                numerator: a0 + (a1 + a2 * fascicle_length) * fascicle_length,
+                denominator: self.per_lengthening,
+            },
+        }
+    }
+}
+
+/// One branch, (1 + n V)/(1 + d V).
+#[derive(Clone, Copy, Debug)]
+struct Branch<S> {
+    numerator: S,
+    denominator: S,
+}
+
+/// FV at one fascicle length, a function of velocity alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VelocityCurve<S> {
+    maximum_velocity: S,
+    shortening: Branch<S>,
+    lengthening: Branch<S>,
+}
+
+impl<S: Scalar> VelocityCurve<S> {
+    /// FV and its slope (s/L_ce0) on the branch named by `lengthening`, at a velocity of that
+    /// side. Faster than V_max, FV is 0: the paper's own expression would push there.
+    pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S) {
+        let branch = if lengthening {
+            self.lengthening
+        } else {
+            self.shortening
+        };
+        let inside = velocity.max(self.maximum_velocity);
+        let reciprocal = S::ONE / (S::ONE + branch.denominator * inside);
+        let value = (S::ONE + branch.numerator * inside) * reciprocal;
+        let slope = (branch.numerator - branch.denominator) * (reciprocal * reciprocal);
+        (
+            value,
+            if velocity > self.maximum_velocity {
+                slope
+            } else {
+                S::ZERO
+            },
+        )
+    }
+}

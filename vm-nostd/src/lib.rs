@@ -1,0 +1,49 @@
+//! Virtual Muscle 4.0 without `std`: a model of human muscle, by fibre type, that a stimulator
+//! or a prosthesis steps once per tick inside its firmware.
+//!
+//! [`MuscleParams`] are validated once, when a [`Muscle`] is built for a [`TimeStep`]; after
+//! that [`Muscle::step`] cannot fail, allocates nothing and does the same work in every tick.
+//! Inputs outside the stated domain are saturated and reported in [`Output::status`].
+//!
+//! Source: Song, Raphael, Lan & Loeb, "Computationally efficient models of neuromuscular
+//! recruitment and mechanics", J. Neural Eng. 5 (2008) 175-184.
+#![no_std]
+
+mod activation;
+mod contraction;
+mod domain;
+mod error;
+mod excitation;
+mod force_length;
+mod force_velocity;
+mod lag;
+mod muscle;
+mod params;
+mod passive;
+mod presets;
+mod recruitment;
+mod sag;
+mod scalar;
+mod softplus;
+mod state;
+mod tendon;
+mod time_step;
+mod yielding;
+
+pub use activation::ActivationParams;
+pub use domain::Status;
+pub use error::{Limit, ParameterError};
+pub use excitation::ExcitationParams;
+pub use force_length::ForceLengthParams;
+pub use force_velocity::ForceVelocityParams;
+pub use muscle::{ContinuousMuscle, FesMuscle, Input, Muscle, Output};
+pub use params::{ElementParams, FiberParams, FiberType, MuscleParams};
+pub use passive::{CompressionParams, ParallelParams};
+pub use presets::{feline_vm4, human_vm4, paper_table_1};
+pub use recruitment::{IntramuscularFes, NaturalContinuous, Recruitment};
+pub use sag::SagParams;
+pub use scalar::Scalar;
+pub use state::{RestoreError, State};
+pub use tendon::TendonParams;
+pub use time_step::TimeStep;
+pub use yielding::YieldParams;

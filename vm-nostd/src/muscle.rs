@@ -1,0 +1,289 @@
+//! A muscle: parameters made into coefficients once, and the tick.
+
+use crate::activation::ActivationFrequency;
+use crate::contraction::{Contractile, Contraction, Motion, confine};
+use crate::domain::{Domain, Status};
+use crate::error::{ParameterError, within};
+use crate::excitation::Excitation;
+use crate::force_length::ForceLength;
+use crate::force_velocity::ForceVelocity;
+use crate::params::{FiberParams, MuscleParams};
+use crate::passive::{Compression, Parallel};
+use crate::recruitment::{
+    Course, IntramuscularFes, NaturalContinuous, Recruited, Recruitment, RecruitmentTick,
+};
+use crate::sag::Sag;
+use crate::scalar::Scalar;
+use crate::state::{FiberState, RestoreError, State};
+use crate::time_step::TimeStep;
+use crate::yielding::Yielding;
+
+/// Inputs of one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Input<S> {
+    /// Activation U (natural modes) or strength of the stimulus (FES), 0..1, in force during
+    /// the tick.
+    pub activation: S,
+    /// Musculotendon path length L_mt at the tick's end, m; it is taken to have changed
+    /// linearly since the tick before.
+    pub path_length: S,
+    /// Stimulation frequency f_stim, pps, 0..500, in force during the tick (FES only).
+    pub stimulation_frequency: S,
+}
+
+/// What one tick yields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output<S> {
+    /// Tendon force F0 F_se, N.
+    pub force: S,
+    /// Fascicle length L, L_ce0.
+    pub fascicle_length: S,
+    /// Fascicle velocity V, L_ce0/s, positive when lengthening.
+    pub fascicle_velocity: S,
+    /// What had to be saturated.
+    pub status: Status,
+}
+
+/// A muscle of `N` fibre types under natural continuous recruitment.
+pub type ContinuousMuscle<S, const N: usize> = Muscle<S, NaturalContinuous, N>;
+/// A muscle of `N` fibre types under intramuscular FES.
+pub type FesMuscle<S, const N: usize> = Muscle<S, IntramuscularFes, N>;
+
+/// A muscle of `N` fibre types, computed in `S`, recruited as `R` says: constant coefficients.
+///
+/// All that changes is in its [`State`], so that one muscle can serve several states.
+#[derive(Clone, Copy, Debug)]
+pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
+    domain: Domain<S>,
+    recruitment: R::Coefficients,
+    fibers: [Fiber<S>; N],
+    parallel: Parallel<S>,
+    compression: Compression<S>,
+    contraction: Contraction<S>,
+    passive_floor: S,
+    max_isometric_force: S,
+    time_step: S,
+    half: S,
+}
+
+/// The coefficients of one fibre type.
+#[derive(Clone, Copy, Debug)]
+struct Fiber<S> {
+    excitation: Excitation<S>,
+    sag: Sag<S>,
+    yielding: Yielding<S>,
+    activation: ActivationFrequency<S>,
+    force_length: ForceLength<S>,
+    force_velocity: ForceVelocity<S>,
+}
+
+impl<S: Scalar> Fiber<S> {
+    fn new(params: &FiberParams, step: TimeStep) -> Self {
+        let t = &params.fiber_type;
+        Self {
+            excitation: Excitation::new(&t.excitation, step),
+            sag: Sag::new(t.sag.as_ref(), step),
+            yielding: Yielding::new(t.yielding.as_ref(), step),
+            activation: ActivationFrequency::new(&t.activation),
+            force_length: ForceLength::new(&t.force_length),
+            force_velocity: ForceVelocity::new(&t.force_velocity),
+        }
+    }
+}
+
+/// Bisections that bring a resting length to the last bit of `f32` and near that of `f64`.
+const REST_BISECTIONS: usize = 48;
+
+impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
+    /// Builds a muscle for a time step, or refuses with the name of the field, its value and the
+    /// limit it broke.
+    pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
+        params.validate()?;
+        let elements = &params.elements;
+        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS {
+            S::ZERO
+        } else {
+            S::from_f64(-1e3)
+        };
+        Ok(Self {
+            domain: Domain::new(params),
+            recruitment: R::Coefficients::new(params, step),
+            fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
+            parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length()),
+            compression: Compression::new(&elements.compression),
+            contraction: Contraction::new(params, step),
+            passive_floor: floor,
+            max_isometric_force: S::from_f64(params.max_isometric_force()),
+            time_step: S::from_f64(step.seconds()),
+            half: S::from_f64(0.5),
+        })
+    }
+
+    /// The muscle at rest on a path of `path_length` m: not activated, not moving, tendon and
+    /// parallel elastic element in balance.
+    pub fn rest(&self, path_length: S) -> Result<State<S, N>, ParameterError> {
+        let range = &self.domain.path_length;
+        within(
+            "path_length",
+            path_length.to_f64(),
+            range.least.to_f64(),
+            range.most.to_f64(),
+        )?;
+        let reach = self.contraction.tendon.reach(path_length);
+        let (mut least, mut most) = (
+            self.domain.fascicle_length.least,
+            self.domain.fascicle_length.most,
+        );
+        for _ in 0..REST_BISECTIONS {
+            let length = (least + most) * self.half;
+            let (pull, _) = self.contraction.tendon.pull(reach, length);
+            // The tendon pulls less, and the parallel element more, the longer the fascicles.
+            if pull > self.parallel.at(length).0 {
+                least = length
+            } else {
+                most = length
+            }
+        }
+        Ok(State {
+            fascicle_length: (least + most) * self.half,
+            fascicle_velocity: S::ZERO,
+            path_length,
+            effective_activation: S::ZERO,
+            fibers: self
+                .fibers
+                .map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
+        })
+    }
+
+    /// A state saved by [`State::words`], refused unless it is one this muscle can be in.
+    pub fn restore(
+        &self,
+        words: impl IntoIterator<Item = S::Bits>,
+    ) -> Result<State<S, N>, RestoreError> {
+        State::from_words(words, &self.domain)
+    }
+
+    /// The state as an output, as it was after the tick that left it: force, length, velocity.
+    pub fn observe(&self, state: &State<S, N>) -> Output<S> {
+        let reach = self.contraction.tendon.reach(state.path_length);
+        let (pull, _) = self.contraction.tendon.pull(reach, state.fascicle_length);
+        Output {
+            force: self.max_isometric_force * pull,
+            fascicle_length: state.fascicle_length,
+            fascicle_velocity: state.fascicle_velocity,
+            status: Status::empty(),
+        }
+    }
+
+    /// Steps one tick. Never fails, never loops on data; what had to be saturated is in the
+    /// output's status, and the state stays finite whatever comes.
+    ///
+    /// Slow quantities (excitation, sag, yield, activation, the lengths' influence) are taken at
+    /// the middle of the tick, with their change across it; the mechanics are then integrated
+    /// implicitly on top of them.
+    pub fn step(&self, state: &mut State<S, N>, input: Input<S>) -> Output<S> {
+        let path_before = state.path_length;
+        let (input, mut status) = self.domain.admit(input, path_before);
+
+        let start = Motion {
+            length: state.fascicle_length,
+            velocity: state.fascicle_velocity,
+        };
+        let travel = start.velocity * self.time_step;
+        let (middle, outside) = self
+            .domain
+            .filaments
+            .clip(start.length + travel * self.half);
+        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside);
+
+        let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
+        let recruited = self.recruitment.advance(excitations, state, &input, middle);
+        let contractile = self.contractile(state, &recruited, middle, travel);
+
+        let reach_before = self.contraction.tendon.reach(path_before);
+        let reach_after = self.contraction.tendon.reach(input.path_length);
+        let reach = Course {
+            middle: (reach_before + reach_after) * self.half,
+            change: reach_after - reach_before,
+        };
+        let end = self.contraction.advance(start, reach, &contractile);
+        let (end, stopped, held) = confine(end, &self.domain);
+        status.set(Status::FASCICLE_LENGTH_LIMITED, stopped);
+        status.set(Status::FASCICLE_VELOCITY_LIMITED, held);
+
+        for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
+            let target = fiber.yielding.target(end.velocity);
+            let mean = (kept.yielding_target + target) * self.half;
+            kept.yielding = fiber.yielding.advance(kept.yielding, mean);
+            kept.yielding_target = target;
+        }
+        state.fascicle_length = end.length;
+        state.fascicle_velocity = end.velocity;
+        state.path_length = input.path_length;
+        Output {
+            status,
+            ..self.observe(state)
+        }
+    }
+
+    /// The contractile element during the tick that starts in `state`, whose fascicles are at
+    /// `middle` half way and travel by `travel` (both L_ce0). Advances sag.
+    fn contractile(
+        &self,
+        state: &mut State<S, N>,
+        recruited: &[Recruited<S>; N],
+        middle: S,
+        travel: S,
+    ) -> Contractile<S, N> {
+        let reciprocal = S::ONE / middle;
+        let logarithm = middle.ln();
+        let (parallel, parallel_slope) = self.parallel.at(middle);
+        let (compression, compression_slope) = self.compression.at(middle);
+        let mut gains = [Course::constant(S::ZERO); N];
+        let mut compressed = Course::constant(S::ZERO);
+        let states = state.fibers.iter_mut();
+        for (((gain, fiber), kept), unit) in gains
+            .iter_mut()
+            .zip(&self.fibers)
+            .zip(states)
+            .zip(recruited)
+        {
+            let sag = fiber.sag.advance(kept.sag, unit.firing);
+            let yielding = fiber.yielding.advance(kept.yielding, kept.yielding_target);
+            let before = kept.yielding * kept.sag;
+            let after = yielding * sag;
+            let modulation = (before + after) * self.half;
+            kept.sag = sag;
+
+            let (activation, activation_change) = fiber.activation.at(reciprocal).at(
+                unit.frequency.middle * modulation,
+                unit.frequency.change * modulation + unit.frequency.middle * (after - before),
+                travel,
+            );
+            kept.activation = (activation + activation_change).max(S::ZERO).min(S::ONE);
+
+            let (length_factor, length_slope) = fiber.force_length.at(logarithm, reciprocal);
+            let active = activation * length_factor;
+            let active_change =
+                activation_change * length_factor + activation * length_slope * travel;
+            gain.middle = unit.weight.middle * active;
+            gain.change = unit.weight.change * active + unit.weight.middle * active_change;
+
+            let weight = &unit.compression_weight;
+            compressed.middle = compressed.middle + weight.middle * activation;
+            compressed.change =
+                compressed.change + weight.change * activation + weight.middle * activation_change;
+        }
+        Contractile {
+            gains,
+            curves: self.fibers.map(|fiber| fiber.force_velocity.at(middle)),
+            passive: Course {
+                middle: parallel + compressed.middle * compression,
+                change: compressed.change * compression,
+            },
+            passive_slope: parallel_slope + compressed.middle * compression_slope,
+            length: middle,
+            passive_floor: self.passive_floor,
+        }
+    }
+}

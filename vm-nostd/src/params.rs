@@ -1,0 +1,263 @@
+//! What a muscle is made of, in SI units and `f64`, and the limits of what can be built.
+
+use crate::activation::ActivationParams;
+use crate::error::{Limit, ParameterError, within};
+use crate::excitation::ExcitationParams;
+use crate::force_length::ForceLengthParams;
+use crate::force_velocity::ForceVelocityParams;
+use crate::passive::{CompressionParams, ParallelParams};
+use crate::sag::SagParams;
+use crate::tendon::TendonParams;
+use crate::yielding::YieldParams;
+
+/// Coefficients of a fibre type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiberType {
+    /// Order of recruitment: super-slow 1, slow 2, fast 3; 1 to 255.
+    pub rank: u8,
+    /// Frequency of half-maximal force at optimal length f_0.5, pps; 0.5 to 200.
+    #[doc(alias = "f05")]
+    pub half_force_frequency: f64,
+    /// Firing frequency at recruitment f_min, f0.5; 0 to 5.
+    #[doc(alias = "fmin")]
+    pub minimum_frequency: f64,
+    /// Firing frequency at full activation f_max, f0.5; f_min to 10.
+    #[doc(alias = "fmax")]
+    pub maximum_frequency: f64,
+    /// Force-length relation.
+    pub force_length: ForceLengthParams,
+    /// Force-velocity relation.
+    pub force_velocity: ForceVelocityParams,
+    /// Activation-frequency relation.
+    pub activation: ActivationParams,
+    /// Rise and fall of excitation.
+    pub excitation: ExcitationParams,
+    /// Sag, of fast types.
+    pub sag: Option<SagParams>,
+    /// Yield, of slow types.
+    pub yielding: Option<YieldParams>,
+}
+
+impl FiberType {
+    fn validate(&self) -> Result<(), ParameterError> {
+        within("rank", f64::from(self.rank), 1.0, 255.0)?;
+        within(
+            "half_force_frequency",
+            self.half_force_frequency,
+            0.5,
+            200.0,
+        )?;
+        within("minimum_frequency", self.minimum_frequency, 0.0, 5.0)?;
+        within(
+            "maximum_frequency",
+            self.maximum_frequency,
+            self.minimum_frequency,
+            10.0,
+        )?;
+        self.force_length.validate()?;
+        self.force_velocity.validate()?;
+        self.activation.validate()?;
+        self.excitation.validate()?;
+        self.sag.as_ref().map_or(Ok(()), SagParams::validate)?;
+        self.yielding.as_ref().map_or(Ok(()), YieldParams::validate)
+    }
+}
+
+/// A fibre type and its share of a muscle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiberParams {
+    /// Share of the physiological cross-sectional area, more than 0 and at most 1.
+    pub fraction: f64,
+    /// The type.
+    pub fiber_type: FiberType,
+}
+
+/// Coefficients that all fibre types of a muscle share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementParams {
+    /// Tendon and aponeurosis.
+    pub tendon: TendonParams,
+    /// Parallel elastic element F_pe1.
+    pub parallel: ParallelParams,
+    /// Thick-filament compression F_pe2.
+    pub compression: CompressionParams,
+    /// Force per cross-sectional area, N/m²; 1e4 to 1e7.
+    pub specific_tension: f64,
+    /// Density of muscle, kg/m³; 500 to 2000.
+    pub density: f64,
+}
+
+impl ElementParams {
+    fn validate(&self) -> Result<(), ParameterError> {
+        self.tendon.validate()?;
+        self.parallel.validate()?;
+        self.compression.validate()?;
+        within("specific_tension", self.specific_tension, 1e4, 1e7)?;
+        within("density", self.density, 500.0, 2000.0)
+    }
+}
+
+/// A muscle of `N` fibre types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MuscleParams<const N: usize> {
+    /// Mass m, kg; 1e-5 to 20.
+    pub mass: f64,
+    /// Optimal fascicle length L_ce0, m; 0.005 to 1.
+    pub fascicle_length: f64,
+    /// Optimal tendon length L_se0, m; 0.001 to 2.
+    pub tendon_length: f64,
+    /// Longest musculotendon path L_mt_max, m; such that [`maximum_fascicle_length`]
+    /// (Self::maximum_fascicle_length) is 0.8 to 2.
+    pub max_path_length: f64,
+    /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
+    #[doc(alias = "Ur")]
+    pub recruitment_saturation: f64,
+    /// What the fibre types share.
+    pub elements: ElementParams,
+    /// Fibre types in order of rank; their fractions add to 1.
+    pub fibers: [FiberParams; N],
+}
+
+/// The fractions of all types add to 1 within this.
+const FRACTION_SUM_TOLERANCE: f64 = 1e-6;
+/// L_max that a muscle may have, L_ce0.
+const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
+/// Fascicle lengths outside of which no type is evaluated, L_ce0.
+const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
+
+impl<const N: usize> MuscleParams<N> {
+    /// Maximal isometric force F0, N: specific tension times cross-sectional area.
+    pub fn max_isometric_force(&self) -> f64 {
+        self.elements.specific_tension * self.mass / (self.elements.density * self.fascicle_length)
+    }
+
+    /// Length L_max of the fascicles, in L_ce0, when the passive muscle is on its longest path.
+    #[doc(alias = "Lmax")]
+    pub fn maximum_fascicle_length(&self) -> f64 {
+        let tendon = self
+            .elements
+            .tendon
+            .length_at(self.elements.parallel.force(1.0));
+        (self.max_path_length - tendon * self.tendon_length) / self.fascicle_length
+    }
+
+    /// Fascicle lengths, in L_ce0, between which the model's equations hold for every type:
+    /// the force-velocity relation has no pole and n_f is not near 0.
+    pub fn fascicle_domain(&self) -> (f64, f64) {
+        let (least, most) = FASCICLE_DOMAIN;
+        self.fibers
+            .iter()
+            .fold((least, most), |(least, most), fiber| {
+                let t = &fiber.fiber_type;
+                (
+                    t.force_velocity.shortest_length(least),
+                    t.activation.longest_length(most),
+                )
+            })
+    }
+
+    /// Path lengths, in m, that are taken as they are; others are saturated and flagged.
+    /// The shortest is where the tendon is slack with the fascicles at their shortest.
+    pub fn path_domain(&self) -> (f64, f64) {
+        let shortest = self.fascicle_domain().0 * self.fascicle_length
+            + self.elements.tendon.slack_length * self.tendon_length;
+        (shortest, self.max_path_length)
+    }
+
+    /// Whether a muscle can be built from these parameters; the error names the field, its
+    /// value and the limit it broke.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        within("mass", self.mass, 1e-5, 20.0)?;
+        within("fascicle_length", self.fascicle_length, 5e-3, 1.0)?;
+        within("tendon_length", self.tendon_length, 1e-3, 2.0)?;
+        within(
+            "recruitment_saturation",
+            self.recruitment_saturation,
+            0.01,
+            1.0,
+        )?;
+        self.elements.validate()?;
+        self.validate_fibers()?;
+
+        let path_at = |maximum: f64| {
+            self.max_path_length + (maximum - self.maximum_fascicle_length()) * self.fascicle_length
+        };
+        let (least, most) = MAXIMUM_FASCICLE_LENGTH;
+        within(
+            "max_path_length",
+            self.max_path_length,
+            path_at(least),
+            path_at(most),
+        )?;
+
+        let (shortest, longest) = self.fascicle_domain();
+        for (index, fiber) in self.fibers.iter().enumerate() {
+            let t = &fiber.fiber_type;
+            let own = within(
+                "force_velocity.shortening",
+                t.force_velocity.shortest_length(FASCICLE_DOMAIN.0),
+                FASCICLE_DOMAIN.0,
+                0.9,
+            )
+            .and_then(|()| t.force_velocity.validate_monotone(shortest, longest))
+            .and_then(|()| {
+                let most = t.activation.longest_length(FASCICLE_DOMAIN.1);
+                within("activation.length_dependence", most, 1.1, FASCICLE_DOMAIN.1)
+            });
+            own.map_err(|error| ParameterError {
+                fiber: Some(index),
+                ..error
+            })?;
+        }
+        Ok(())
+    }
+
+    fn validate_fibers(&self) -> Result<(), ParameterError> {
+        let mut sum = 0.0;
+        let mut rank_before = 0;
+        for (index, fiber) in self.fibers.iter().enumerate() {
+            let located = |error| ParameterError {
+                fiber: Some(index),
+                ..error
+            };
+            within("fraction", fiber.fraction, 1e-6, 1.0).map_err(located)?;
+            fiber.fiber_type.validate().map_err(located)?;
+            let rank = fiber.fiber_type.rank;
+            if rank < rank_before {
+                let limit = Limit::NotBefore {
+                    rank: f64::from(rank_before),
+                };
+                let value = f64::from(rank);
+                return Err(located(ParameterError {
+                    field: "rank",
+                    fiber: None,
+                    value,
+                    limit,
+                }));
+            }
+            rank_before = rank;
+            sum += fiber.fraction;
+        }
+        if N == 0 {
+            let limit = Limit::AtLeastOneType;
+            return Err(ParameterError {
+                field: "fibers",
+                fiber: None,
+                value: 0.0,
+                limit,
+            });
+        }
+        if libm::fabs(sum - 1.0) > FRACTION_SUM_TOLERANCE {
+            let limit = Limit::SumIsOne {
+                within: FRACTION_SUM_TOLERANCE,
+            };
+            return Err(ParameterError {
+                field: "fraction",
+                fiber: None,
+                value: sum,
+                limit,
+            });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,170 @@
+//! Natural continuous recruitment: one lumped unit per fibre type.
+//!
+//! Uth_1 = 0.001, Uth_i = U_r × cross section of the types before;
+//! dU_eff/dt = (U - U_eff)/T_U, T_U = 0.03 s rising, 0.15 s falling;
+//! W_i = (U_eff - Uth_i)/Σ (U_eff - Uth_k), over all recruited types.
+//!
+//! The paper prints the sum only up to i; its own results, and its authors' program, sum over all
+//! recruited types, so that the weights add to 1.
+
+use super::{Course, Recruited, Recruitment, RecruitmentTick};
+use crate::excitation::Excitation;
+use crate::lag::Lag;
+use crate::muscle::Input;
+use crate::params::MuscleParams;
+use crate::sag::{SagParams, share_above};
+use crate::scalar::{Scalar, sealed::Sealed};
+use crate::state::State;
+use crate::time_step::TimeStep;
+
+/// Natural continuous recruitment. The stimulation frequency is not used.
+#[derive(Clone, Copy, Debug)]
+pub struct NaturalContinuous;
+
+impl Sealed for NaturalContinuous {}
+
+impl<S: Scalar, const N: usize> Recruitment<S, N> for NaturalContinuous {
+    type Coefficients = Coefficients<S, N>;
+}
+
+/// Threshold of the first type, and time constants of effective activation (s).
+const FIRST_THRESHOLD: f64 = 0.001;
+const RISE_TIME: f64 = 0.03;
+const FALL_TIME: f64 = 0.15;
+
+#[derive(Clone, Copy, Debug)]
+pub struct Coefficients<S, const N: usize> {
+    rise: Lag<S>,
+    fall: Lag<S>,
+    firing: S,
+    units: [Unit<S>; N],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Unit<S> {
+    /// Uth.
+    threshold: S,
+    /// fmin.
+    minimum_frequency: S,
+    /// (fmax - fmin)/(1 - Uth).
+    frequency_slope: S,
+}
+
+impl<S: Scalar> Unit<S> {
+    /// f_env: from fmin at the threshold to fmax at U = 1, by raw activation.
+    fn firing_frequency(&self, activation: S) -> S {
+        if activation >= self.threshold {
+            self.minimum_frequency + self.frequency_slope * (activation - self.threshold)
+        } else {
+            S::ZERO
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
+    const PASSIVE_ONLY_PULLS: bool = false;
+
+    fn new(params: &MuscleParams<N>, step: TimeStep) -> Self {
+        let mut before = 0.0;
+        let units = params.fibers.map(|fiber| {
+            let t = &fiber.fiber_type;
+            let threshold = if before == 0.0 {
+                FIRST_THRESHOLD
+            } else {
+                params.recruitment_saturation * before
+            };
+            before += fiber.fraction;
+            let slope = (t.maximum_frequency - t.minimum_frequency) / (1.0 - threshold);
+            Unit {
+                threshold: S::from_f64(threshold),
+                minimum_frequency: S::from_f64(t.minimum_frequency),
+                frequency_slope: S::from_f64(slope),
+            }
+        });
+        Self {
+            rise: Lag::new(RISE_TIME, step),
+            fall: Lag::new(FALL_TIME, step),
+            firing: S::from_f64(SagParams::FIRING),
+            units,
+        }
+    }
+
+    fn advance(
+        &self,
+        excitations: [&Excitation<S>; N],
+        state: &mut State<S, N>,
+        input: &Input<S>,
+        fascicle_length: S,
+    ) -> [Recruited<S>; N] {
+        let activation = input.activation;
+        let start = state.effective_activation;
+        // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
+        let lag = if activation >= start {
+            &self.rise
+        } else {
+            &self.fall
+        };
+        let middle = lag.at_middle(start, activation);
+        let end = lag.at_end(start, activation);
+        state.effective_activation = end;
+
+        let (mut sum, mut count) = (S::ZERO, S::ZERO);
+        for unit in &self.units {
+            if middle >= unit.threshold {
+                sum = sum + (middle - unit.threshold);
+                count = count + S::ONE;
+            }
+        }
+        // At its own threshold a single type carries everything, whatever the excess.
+        let per_sum = if sum > S::ZERO { S::ONE / sum } else { S::ZERO };
+
+        let mut recruited = [Recruited {
+            frequency: Course::constant(S::ZERO),
+            firing: S::ZERO,
+            weight: Course::constant(S::ZERO),
+            compression_weight: Course::constant(S::ZERO),
+        }; N];
+        let fibers = state.fibers.iter_mut();
+        for (((result, unit), fiber), excitation) in recruited
+            .iter_mut()
+            .zip(&self.units)
+            .zip(fibers)
+            .zip(excitations)
+        {
+            let drive = unit.firing_frequency(activation);
+            let before = fiber.effective_frequency;
+            let excited = excitation.advance(
+                (fiber.intermediate_frequency, before),
+                drive,
+                drive,
+                fiber.activation,
+                fascicle_length,
+            );
+            fiber.intermediate_frequency = excited.intermediate;
+            fiber.effective_frequency = excited.effective;
+
+            // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
+            let weight = if middle >= unit.threshold {
+                let excess = middle - unit.threshold;
+                let value = middle * excess * per_sum;
+                let slope = (middle + excess - count * value) * per_sum;
+                Course {
+                    middle: value,
+                    change: slope * (end - start),
+                }
+            } else {
+                Course::constant(S::ZERO)
+            };
+            *result = Recruited {
+                frequency: Course {
+                    middle: excited.effective_at_middle,
+                    change: excited.effective - before,
+                },
+                firing: share_above(before, excited.effective, self.firing),
+                weight,
+                compression_weight: weight,
+            };
+        }
+        recruited
+    }
+}

@@ -1,0 +1,73 @@
+//! Sag of fast fibres: dS/dt = (aS - S)/TS, aS = aS1 below f = 0.1 f0.5, else aS2.
+
+use crate::error::{ParameterError, within};
+use crate::lag::Lag;
+use crate::scalar::Scalar;
+use crate::time_step::TimeStep;
+
+/// Coefficients of sag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SagParams {
+    /// Level at rest a_S1; 0.01 to 10.
+    #[doc(alias = "aS1")]
+    pub resting_level: f64,
+    /// Level while firing a_S2; 0.01 to 10.
+    #[doc(alias = "aS2")]
+    pub firing_level: f64,
+    /// Time constant T_S, s; 0.002 to 100.
+    #[doc(alias = "TS")]
+    pub time_constant: f64,
+}
+
+impl SagParams {
+    /// The frequency from which a type counts as firing, f0.5.
+    pub(crate) const FIRING: f64 = 0.1;
+
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        within("sag.resting_level", self.resting_level, 0.01, 10.0)?;
+        within("sag.firing_level", self.firing_level, 0.01, 10.0)?;
+        within("sag.time_constant", self.time_constant, 2e-3, 100.0)
+    }
+}
+
+/// Sag of one fibre type; S stays 1 for a type without it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sag<S> {
+    pub(crate) resting_level: S,
+    firing_level: S,
+    lag: Lag<S>,
+}
+
+impl<S: Scalar> Sag<S> {
+    pub(crate) fn new(params: Option<&SagParams>, step: TimeStep) -> Self {
+        // Without sag both levels are 1, and so is S from the start.
+        let (resting, firing, time_constant) = params.map_or((1.0, 1.0, 1.0), |p| {
+            (p.resting_level, p.firing_level, p.time_constant)
+        });
+        Self {
+            resting_level: S::from_f64(resting),
+            firing_level: S::from_f64(firing),
+            lag: Lag::new(time_constant, step),
+        }
+    }
+
+    /// S at the tick's end, the type having been firing for a `share` (0..1) of it.
+    pub(crate) fn advance(&self, sag: S, share: S) -> S {
+        let target = self.resting_level + (self.firing_level - self.resting_level) * share;
+        self.lag.at_end(sag, target)
+    }
+}
+
+/// The share of a tick (0..1) that a frequency going from `start` to `end` is at or above `level`.
+pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
+    let (above_start, above_end) = (start >= level, end >= level);
+    if above_start == above_end {
+        return if above_end { S::ONE } else { S::ZERO };
+    }
+    let share_before = (level - start) / (end - start);
+    if above_end {
+        S::ONE - share_before
+    } else {
+        share_before
+    }
+}

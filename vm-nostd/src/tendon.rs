@@ -1,0 +1,71 @@
+//! Tendon and aponeurosis: F_se = cT kT ln(exp((L_se - LrT)/kT) + 1).
+
+use crate::error::{ParameterError, within};
+use crate::scalar::Scalar;
+use crate::softplus::softplus;
+
+/// Coefficients of the series elastic element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TendonParams {
+    /// Stiffness of the stretched tendon c_T, F0/L_se0; 1 to 200.
+    #[doc(alias = "cT")]
+    pub stiffness: f64,
+    /// Width of the toe region k_T, L_se0; 0.0005 to 0.1.
+    #[doc(alias = "kT")]
+    pub toe: f64,
+    /// Slack length L_r^T, L_se0; 0.5 to 1.5.
+    #[doc(alias = "LrT")]
+    pub slack_length: f64,
+}
+
+impl TendonParams {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        within("tendon.stiffness", self.stiffness, 1.0, 200.0)?;
+        within("tendon.toe", self.toe, 5e-4, 0.1)?;
+        within("tendon.slack_length", self.slack_length, 0.5, 1.5)
+    }
+
+    /// The tendon length, in L_se0, that carries `force` (F0, more than 0).
+    pub(crate) fn length_at(&self, force: f64) -> f64 {
+        self.toe * libm::log(libm::expm1(force / (self.stiffness * self.toe))) + self.slack_length
+    }
+}
+
+/// The tendon of one muscle, seen from its two ends: path length and fascicle length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tendon<S> {
+    /// 1/(kT L_se0), per m of path.
+    per_path: S,
+    /// L_ce0/(kT L_se0), per L_ce0 of fascicle.
+    per_fascicle: S,
+    /// LrT/kT.
+    slack: S,
+    /// cT kT, F0.
+    force: S,
+    /// cT L_ce0/L_se0, F0 per L_ce0 of fascicle.
+    stiffness: S,
+}
+
+impl<S: Scalar> Tendon<S> {
+    pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {
+        let ratio = fascicle_length / tendon_length;
+        Self {
+            per_path: S::from_f64(1.0 / (params.toe * tendon_length)),
+            per_fascicle: S::from_f64(ratio / params.toe),
+            slack: S::from_f64(params.slack_length / params.toe),
+            force: S::from_f64(params.stiffness * params.toe),
+            stiffness: S::from_f64(params.stiffness * ratio),
+        }
+    }
+
+    /// A path length (m) as the tendon's length beyond slack, in kT, at zero fascicle length.
+    pub(crate) fn reach(&self, path_length: S) -> S {
+        path_length * self.per_path - self.slack
+    }
+
+    /// Force (F0), and by how much it falls per L_ce0 of fascicle length.
+    pub(crate) fn pull(&self, reach: S, fascicle_length: S) -> (S, S) {
+        let (value, slope) = softplus(reach - fascicle_length * self.per_fascicle);
+        (self.force * value, self.stiffness * slope)
+    }
+}

@@ -1,0 +1,28 @@
+//! The time step a muscle is built for.
+
+use crate::error::{ParameterError, within};
+
+/// Time between two ticks, 0.1 ms to 2 ms. Coefficients are computed for it once, at build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeStep(f64);
+
+impl TimeStep {
+    /// 1 ms, a tick rate of 1 kHz.
+    pub const MILLISECOND: Self = Self(1e-3);
+    /// Shortest step, s.
+    pub const SHORTEST: f64 = 1e-4;
+    /// Longest step, s.
+    pub const LONGEST: f64 = 2e-3;
+
+    /// A step of `seconds`, refused outside [`SHORTEST`](Self::SHORTEST) to
+    /// [`LONGEST`](Self::LONGEST).
+    pub fn from_seconds(seconds: f64) -> Result<Self, ParameterError> {
+        within("time_step", seconds, Self::SHORTEST, Self::LONGEST)?;
+        Ok(Self(seconds))
+    }
+
+    /// The step in s.
+    pub const fn seconds(self) -> f64 {
+        self.0
+    }
+}

@@ -1,0 +1,59 @@
+//! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
+
+use crate::error::{ParameterError, within};
+use crate::lag::Lag;
+use crate::scalar::Scalar;
+use crate::time_step::TimeStep;
+
+/// Coefficients of yield.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldParams {
+    /// Depth c_Y; 0 to 0.95.
+    #[doc(alias = "cY")]
+    pub depth: f64,
+    /// Velocity scale V_Y, L_ce0/s; 0.01 to 100.
+    #[doc(alias = "VY")]
+    pub velocity: f64,
+    /// Time constant T_Y, s; 0.002 to 100.
+    #[doc(alias = "TY")]
+    pub time_constant: f64,
+}
+
+impl YieldParams {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        within("yielding.depth", self.depth, 0.0, 0.95)?;
+        within("yielding.velocity", self.velocity, 0.01, 100.0)?;
+        within("yielding.time_constant", self.time_constant, 2e-3, 100.0)
+    }
+}
+
+/// Yield of one fibre type; Y stays 1 for a type without it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Yielding<S> {
+    depth: S,
+    /// 1/VY.
+    per_velocity: S,
+    lag: Lag<S>,
+}
+
+impl<S: Scalar> Yielding<S> {
+    pub(crate) fn new(params: Option<&YieldParams>, step: TimeStep) -> Self {
+        let (depth, velocity, time_constant) =
+            params.map_or((0.0, 1.0, 1.0), |p| (p.depth, p.velocity, p.time_constant));
+        Self {
+            depth: S::from_f64(depth),
+            per_velocity: S::from_f64(1.0 / velocity),
+            lag: Lag::new(time_constant, step),
+        }
+    }
+
+    /// Where Y tends to at a fascicle velocity in L_ce0/s.
+    pub(crate) fn target(&self, velocity: S) -> S {
+        S::ONE - self.depth * (S::ONE - (-(velocity.abs() * self.per_velocity)).exp())
+    }
+
+    /// Y at the tick's end, given the mean of its target over the tick.
+    pub(crate) fn advance(&self, yielding: S, target: S) -> S {
+        self.lag.at_end(yielding, target)
+    }
+}
