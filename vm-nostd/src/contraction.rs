@@ -8,7 +8,7 @@
 //! with it the branch of FV; Newton steps on that branch need no search and no loop that depends
 //! on the data.
 
-use crate::domain::{Domain, MAXIMUM_SPEED};
+use crate::domain::MAXIMUM_SPEED;
 use crate::force_velocity::VelocityCurve;
 use crate::params::MuscleParams;
 use crate::recruitment::Course;
@@ -23,11 +23,11 @@ const LONGEST_SUBSTEP: f64 = 0.25e-3;
 /// Newton steps per stage, after the branch is known.
 const NEWTON_STEPS: usize = 2;
 
-/// Length and velocity of the fascicles.
+/// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<S> {
-    /// L_ce0.
-    pub(crate) length: S,
+    /// How much longer they have become, L_ce0.
+    pub(crate) lengthening: S,
     /// L_ce0/s.
     pub(crate) velocity: S,
 }
@@ -40,12 +40,10 @@ pub(crate) struct Contractile<S, const N: usize> {
     pub(crate) gains: [Course<S>; N],
     /// FV of each type.
     pub(crate) curves: [VelocityCurve<S>; N],
-    /// Passive force at `length` and V = 0.
+    /// Passive force at the length the tick starts with and V = 0.
     pub(crate) passive: Course<S>,
     /// Its slope, F0/L_ce0.
     pub(crate) passive_slope: S,
-    /// Fascicle length at which the passive force was taken, L_ce0.
-    pub(crate) length: S,
     /// The least that the passive force may be, F0.
     pub(crate) passive_floor: S,
 }
@@ -97,30 +95,32 @@ impl<S: Scalar> Contraction<S> {
         }
     }
 
-    /// One tick, in which the tendon's `reach` goes linearly through its course.
+    /// One tick from `velocity`, in which the tendon, were the fascicles to stay as they are, would
+    /// go linearly through `extension` (kT beyond slack).
+    ///
+    /// The tendon's extension, not the fascicles' length, carries the state: near slack it is a
+    /// small number, and in `f32` a slow motion is not lost in the rounding of a large one.
     pub(crate) fn advance<const N: usize>(
         &self,
-        start: Motion<S>,
-        reach: Course<S>,
+        velocity: S,
+        extension: Course<S>,
         contractile: &Contractile<S, N>,
     ) -> Motion<S> {
-        let mut motion = start;
+        let mut motion = Motion {
+            lengthening: S::ZERO,
+            velocity,
+        };
         // Time since the tick's middle, in ticks.
         let mut time = -self.half;
         for _ in 0..self.substeps {
-            let first = self.stage(
-                motion,
-                time + self.gamma_share,
-                reach,
-                contractile,
-                motion.velocity,
-            );
+            let at_first = time + self.gamma_share;
+            let first = self.stage(motion, at_first, extension, contractile, motion.velocity);
             let carried = Motion {
-                length: motion.length + self.carry_time * first.velocity,
+                lengthening: motion.lengthening + self.carry_time * first.velocity,
                 velocity: motion.velocity + self.carry * (first.velocity - motion.velocity),
             };
             time = time + self.share;
-            motion = self.stage(carried, time, reach, contractile, first.velocity);
+            motion = self.stage(carried, time, extension, contractile, first.velocity);
         }
         motion
     }
@@ -130,20 +130,20 @@ impl<S: Scalar> Contraction<S> {
         &self,
         base: Motion<S>,
         time: S,
-        reach: Course<S>,
+        extension: Course<S>,
         contractile: &Contractile<S, N>,
         guess: S,
     ) -> Motion<S> {
         let stage = Stage {
             contraction: self,
             base,
-            reach: reach.middle + reach.change * time,
+            extension: extension.middle + extension.change * time,
             gains: contractile
                 .gains
                 .map(|gain| gain.middle + gain.change * time),
             passive: contractile.passive.middle
                 + contractile.passive.change * time
-                + contractile.passive_slope * (base.length - contractile.length),
+                + contractile.passive_slope * base.lengthening,
             contractile,
         };
         let (at_zero, _) = stage.residual(true, S::ZERO);
@@ -163,7 +163,7 @@ impl<S: Scalar> Contraction<S> {
             };
         }
         Motion {
-            length: base.length + self.gamma_time * velocity,
+            lengthening: base.lengthening + self.gamma_time * velocity,
             velocity,
         }
     }
@@ -174,7 +174,7 @@ struct Stage<'a, S, const N: usize> {
     contraction: &'a Contraction<S>,
     contractile: &'a Contractile<S, N>,
     base: Motion<S>,
-    reach: S,
+    extension: S,
     gains: [S; N],
     passive: S,
 }
@@ -199,21 +199,11 @@ impl<S: Scalar, const N: usize> Stage<'_, S, N> {
         if force < S::ZERO {
             (force, slope) = (S::ZERO, S::ZERO);
         }
-        let length = self.base.length + c.gamma_time * velocity;
-        let (pull, stiffness) = c.tendon.pull(self.reach, length);
+        let lengthening = self.base.lengthening + c.gamma_time * velocity;
+        let (pull, stiffness) = c.tendon.pull(c.tendon.give(self.extension, lengthening));
         (
             c.inertia * (velocity - self.base.velocity) + force - pull,
             c.inertia + slope + stiffness * c.gamma_time,
         )
     }
-}
-
-/// Keeps a motion inside the state's domain; says whether length and velocity were inside.
-pub(crate) fn confine<S: Scalar>(motion: Motion<S>, domain: &Domain<S>) -> (Motion<S>, bool, bool) {
-    let (length, stopped) = domain.fascicle_length.clip(motion.length);
-    let (velocity, _) = domain.fascicle_velocity.clip(motion.velocity);
-    let held =
-        velocity >= domain.fascicle_velocity.most || velocity <= domain.fascicle_velocity.least;
-    let velocity = if stopped { S::ZERO } else { velocity };
-    (Motion { length, velocity }, stopped, held)
 }

@@ -1,7 +1,7 @@
 //! A muscle: parameters made into coefficients once, and the tick.
 
 use crate::activation::ActivationFrequency;
-use crate::contraction::{Contractile, Contraction, Motion, confine};
+use crate::contraction::{Contractile, Contraction};
 use crate::domain::{Domain, Status};
 use crate::error::{ParameterError, within};
 use crate::excitation::Excitation;
@@ -129,23 +129,22 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             range.least.to_f64(),
             range.most.to_f64(),
         )?;
-        let reach = self.contraction.tendon.reach(path_length);
-        let (mut least, mut most) = (
-            self.domain.fascicle_length.least,
-            self.domain.fascicle_length.most,
-        );
+        let tendon = &self.contraction.tendon;
+        let lengths = &self.domain.fascicle_length;
+        let mut least = tendon.extension(path_length, lengths.most);
+        let mut most = tendon.extension(path_length, lengths.least);
         for _ in 0..REST_BISECTIONS {
-            let length = (least + most) * self.half;
-            let (pull, _) = self.contraction.tendon.pull(reach, length);
-            // The tendon pulls less, and the parallel element more, the longer the fascicles.
-            if pull > self.parallel.at(length).0 {
-                least = length
+            let extension = (least + most) * self.half;
+            let length = tendon.fascicle_length(path_length, extension);
+            // The tendon pulls more, and the parallel element less, the further it is extended.
+            if tendon.pull(extension).0 > self.parallel.at(length).0 {
+                most = extension;
             } else {
-                most = length
+                least = extension;
             }
         }
         Ok(State {
-            fascicle_length: (least + most) * self.half,
+            tendon_extension: (least + most) * self.half,
             fascicle_velocity: S::ZERO,
             path_length,
             effective_activation: S::ZERO,
@@ -160,16 +159,15 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         &self,
         words: impl IntoIterator<Item = S::Bits>,
     ) -> Result<State<S, N>, RestoreError> {
-        State::from_words(words, &self.domain)
+        State::from_words(words, &self.domain, &self.contraction.tendon)
     }
 
     /// The state as an output, as it was after the tick that left it: force, length, velocity.
     pub fn observe(&self, state: &State<S, N>) -> Output<S> {
-        let reach = self.contraction.tendon.reach(state.path_length);
-        let (pull, _) = self.contraction.tendon.pull(reach, state.fascicle_length);
+        let tendon = &self.contraction.tendon;
         Output {
-            force: self.max_isometric_force * pull,
-            fascicle_length: state.fascicle_length,
+            force: self.max_isometric_force * tendon.pull(state.tendon_extension).0,
+            fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
             fascicle_velocity: state.fascicle_velocity,
             status: Status::empty(),
         }
@@ -182,48 +180,63 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// the middle of the tick, with their change across it; the mechanics are then integrated
     /// implicitly on top of them.
     pub fn step(&self, state: &mut State<S, N>, input: Input<S>) -> Output<S> {
-        let path_before = state.path_length;
-        let (input, mut status) = self.domain.admit(input, path_before);
+        let (input, mut status) = self.domain.admit(input, state.path_length);
+        let tendon = &self.contraction.tendon;
 
-        let start = Motion {
-            length: state.fascicle_length,
-            velocity: state.fascicle_velocity,
-        };
-        let travel = start.velocity * self.time_step;
-        let (middle, outside) = self
-            .domain
-            .filaments
-            .clip(start.length + travel * self.half);
+        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let travel = state.fascicle_velocity * self.time_step;
+        let (middle, outside) = self.domain.filaments.clip(length + travel * self.half);
         status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside);
 
         let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
         let recruited = self.recruitment.advance(excitations, state, &input, middle);
-        let contractile = self.contractile(state, &recruited, middle, travel);
+        let mut contractile = self.contractile(state, &recruited, middle, travel);
+        // Brought from the middle, where it was taken, to the start.
+        contractile.passive.middle =
+            contractile.passive.middle + contractile.passive_slope * (length - middle);
 
-        let reach_before = self.contraction.tendon.reach(path_before);
-        let reach_after = self.contraction.tendon.reach(input.path_length);
-        let reach = Course {
-            middle: (reach_before + reach_after) * self.half,
-            change: reach_after - reach_before,
+        let stretch = tendon.stretch(input.path_length - state.path_length);
+        let extension = Course {
+            middle: state.tendon_extension + stretch * self.half,
+            change: stretch,
         };
-        let end = self.contraction.advance(start, reach, &contractile);
-        let (end, stopped, held) = confine(end, &self.domain);
-        status.set(Status::FASCICLE_LENGTH_LIMITED, stopped);
-        status.set(Status::FASCICLE_VELOCITY_LIMITED, held);
+        let end = self
+            .contraction
+            .advance(state.fascicle_velocity, extension, &contractile);
+        state.path_length = input.path_length;
+        state.fascicle_velocity = end.velocity;
+        state.tendon_extension = tendon.give(state.tendon_extension + stretch, end.lengthening);
+        status |= self.confine(state);
 
         for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
-            let target = fiber.yielding.target(end.velocity);
+            let target = fiber.yielding.target(state.fascicle_velocity);
             let mean = (kept.yielding_target + target) * self.half;
             kept.yielding = fiber.yielding.advance(kept.yielding, mean);
             kept.yielding_target = target;
         }
-        state.fascicle_length = end.length;
-        state.fascicle_velocity = end.velocity;
-        state.path_length = input.path_length;
         Output {
             status,
             ..self.observe(state)
         }
+    }
+
+    /// Keeps length and velocity inside what the state can hold, and says what it had to keep.
+    fn confine(&self, state: &mut State<S, N>) -> Status {
+        let tendon = &self.contraction.tendon;
+        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let (length, stopped) = self.domain.fascicle_length.clip(length);
+        if stopped {
+            state.tendon_extension = tendon.extension(state.path_length, length);
+            state.fascicle_velocity = S::ZERO;
+        }
+        let speeds = &self.domain.fascicle_velocity;
+        let (velocity, _) = speeds.clip(state.fascicle_velocity);
+        state.fascicle_velocity = velocity;
+        let mut status = Status::empty();
+        status.set(Status::FASCICLE_LENGTH_LIMITED, stopped);
+        let held = velocity >= speeds.most || velocity <= speeds.least;
+        status.set(Status::FASCICLE_VELOCITY_LIMITED, held);
+        status
     }
 
     /// The contractile element during the tick that starts in `state`, whose fascicles are at
@@ -282,7 +295,6 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
                 change: compressed.change * compression,
             },
             passive_slope: parallel_slope + compressed.middle * compression_slope,
-            length: middle,
             passive_floor: self.passive_floor,
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use crate::scalar::Scalar;
+use crate::tendon::Tendon;
 use core::fmt;
 
 /// The state of a muscle of `N` fibre types, plain data: copy it to save it.
@@ -10,8 +11,8 @@ use core::fmt;
 /// [`Muscle::restore`](crate::Muscle::restore) takes them back after checking them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S, const N: usize> {
-    /// L, L_ce0.
-    pub(crate) fascicle_length: S,
+    /// (L_se - LrT)/kT: how far the tendon is extended beyond slack, in widths of its toe.
+    pub(crate) tendon_extension: S,
     /// V, L_ce0/s.
     pub(crate) fascicle_velocity: S,
     /// L_mt at the end of the last tick, m.
@@ -89,11 +90,6 @@ impl<S: Scalar, const N: usize> State<S, N> {
     /// How many words the state is saved in.
     pub const WORDS: usize = OF_MUSCLE + PER_FIBER * N;
 
-    /// Fascicle length L, L_ce0.
-    pub fn fascicle_length(&self) -> S {
-        self.fascicle_length
-    }
-
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
     pub fn fascicle_velocity(&self) -> S {
         self.fascicle_velocity
@@ -102,7 +98,7 @@ impl<S: Scalar, const N: usize> State<S, N> {
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
-            self.fascicle_length,
+            self.tendon_extension,
             self.fascicle_velocity,
             self.path_length,
             self.effective_activation,
@@ -117,6 +113,7 @@ impl<S: Scalar, const N: usize> State<S, N> {
     pub(crate) fn from_words(
         words: impl IntoIterator<Item = S::Bits>,
         domain: &Domain<S>,
+        tendon: &Tendon<S>,
     ) -> Result<Self, RestoreError> {
         let mut words = words.into_iter();
         let mut count = 0;
@@ -134,12 +131,18 @@ impl<S: Scalar, const N: usize> State<S, N> {
         let share = |value: S| value >= S::ZERO && value <= S::ONE;
         let level = |value: S| value >= S::ZERO && value <= S::from_f64(1e3);
         let mut state = Self {
-            fascicle_length: next(&|value| domain.fascicle_length.contains(value))?,
+            tendon_extension: next(&|value| value.is_finite())?,
             fascicle_velocity: next(&|value| domain.fascicle_velocity.contains(value))?,
             path_length: next(&|value| domain.path_length.contains(value))?,
             effective_activation: next(&share)?,
             fibers: [FiberState::at_rest(S::ONE); N],
         };
+        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let (nearest, _) = domain.fascicle_length.clip(length);
+        // A length that was stopped at a limit comes back with the rounding of its extension.
+        if (length - nearest).abs() > S::from_f64(1e-4) {
+            return Err(RestoreError::Value { word: 0 });
+        }
         for fiber in &mut state.fibers {
             *fiber = FiberState {
                 intermediate_frequency: next(&level)?,

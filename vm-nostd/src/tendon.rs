@@ -31,14 +31,18 @@ impl TendonParams {
     }
 }
 
-/// The tendon of one muscle, seen from its two ends: path length and fascicle length.
+/// The tendon of one muscle. Its extension is counted beyond slack and in widths of the toe:
+/// (L_se - LrT)/kT.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tendon<S> {
     /// 1/(kT L_se0), per m of path.
     per_path: S,
     /// L_ce0/(kT L_se0), per L_ce0 of fascicle.
     per_fascicle: S,
-    /// LrT/kT.
+    /// kT L_se0/L_ce0, L_ce0 of fascicle per extension.
+    fascicle_per_extension: S,
+    /// 1/L_ce0, and LrT L_se0/L_ce0.
+    fascicle_per_path: S,
     slack: S,
     /// cT kT, F0.
     force: S,
@@ -52,20 +56,37 @@ impl<S: Scalar> Tendon<S> {
         Self {
             per_path: S::from_f64(1.0 / (params.toe * tendon_length)),
             per_fascicle: S::from_f64(ratio / params.toe),
-            slack: S::from_f64(params.slack_length / params.toe),
+            fascicle_per_extension: S::from_f64(params.toe / ratio),
+            fascicle_per_path: S::from_f64(1.0 / fascicle_length),
+            slack: S::from_f64(params.slack_length / ratio),
             force: S::from_f64(params.stiffness * params.toe),
             stiffness: S::from_f64(params.stiffness * ratio),
         }
     }
 
-    /// A path length (m) as the tendon's length beyond slack, in kT, at zero fascicle length.
-    pub(crate) fn reach(&self, path_length: S) -> S {
-        path_length * self.per_path - self.slack
+    /// Change of extension when the path becomes longer by `path` m.
+    pub(crate) fn stretch(&self, path: S) -> S {
+        path * self.per_path
     }
 
-    /// Force (F0), and by how much it falls per L_ce0 of fascicle length.
-    pub(crate) fn pull(&self, reach: S, fascicle_length: S) -> (S, S) {
-        let (value, slope) = softplus(reach - fascicle_length * self.per_fascicle);
+    /// Extension after the fascicles have become longer by `lengthening` L_ce0.
+    pub(crate) fn give(&self, extension: S, lengthening: S) -> S {
+        extension - lengthening * self.per_fascicle
+    }
+
+    /// Extension that leaves the fascicles `length` (L_ce0) on a path of `path` m.
+    pub(crate) fn extension(&self, path: S, length: S) -> S {
+        (path * self.fascicle_per_path - self.slack - length) * self.per_fascicle
+    }
+
+    /// Fascicle length (L_ce0) on a path of `path` m with the tendon at an extension.
+    pub(crate) fn fascicle_length(&self, path: S, extension: S) -> S {
+        path * self.fascicle_per_path - self.slack - extension * self.fascicle_per_extension
+    }
+
+    /// Force (F0) at an extension, and by how much it falls per L_ce0 of fascicle length.
+    pub(crate) fn pull(&self, extension: S) -> (S, S) {
+        let (value, slope) = softplus(extension);
         (self.force * value, self.stiffness * slope)
     }
 }
