@@ -26,10 +26,7 @@ pub enum RowError {
 /// Reads a table whose first `labels` columns are text; rows are keyed by those, joined by `/`.
 fn table(text: &'static str, labels: usize) -> Vec<(String, Row)> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader
-        .headers()
-        .expect("a header in the built-in table")
-        .clone();
+    let header = reader.headers().expect("a header in the built-in table").clone();
     reader
         .records()
         .map(|record| {
@@ -41,10 +38,7 @@ fn table(text: &'static str, labels: usize) -> Vec<(String, Row)> {
                 .skip(labels)
                 .filter(|(_, cell)| !cell.is_empty())
                 .map(|(name, cell)| {
-                    (
-                        name.to_owned(),
-                        cell.parse().expect("a number in the built-in table"),
-                    )
+                    (name.to_owned(), cell.parse().expect("a number in the built-in table"))
                 })
                 .collect();
             (label.join("/"), row)
@@ -77,11 +71,7 @@ pub fn fiber_row(preset: &str) -> Option<Row> {
 /// The shared elements of a set, such as "paper-table-1".
 pub fn elements(set: &str) -> Option<Elements> {
     let row = find(element_rows(), set)?;
-    let get = |name: &str| {
-        row.get(name)
-            .copied()
-            .expect("a full row in the built-in table")
-    };
+    let get = |name: &str| row.get(name).copied().expect("a full row in the built-in table");
     Some(Elements {
         cT: get("cT"),
         kT: get("kT"),
@@ -99,9 +89,7 @@ pub fn elements(set: &str) -> Option<Elements> {
 }
 
 fn find(rows: Vec<(String, Row)>, label: &str) -> Option<Row> {
-    rows.into_iter()
-        .find(|(name, _)| name == label)
-        .map(|(_, row)| row)
+    rows.into_iter().find(|(name, _)| name == label).map(|(_, row)| row)
 }
 
 /// A fibre type from its row, times brought from milliseconds to seconds.
@@ -139,20 +127,12 @@ pub fn fiber_type(row: &Row) -> Result<FiberType, RowError> {
         Tf3: seconds("Tf3_ms")?,
         Tf4: seconds("Tf4_ms")?,
         sag: if any(&["aS1", "aS2", "TS_ms"]) {
-            Some(Sag {
-                aS1: get("aS1")?,
-                aS2: get("aS2")?,
-                TS: seconds("TS_ms")?,
-            })
+            Some(Sag { aS1: get("aS1")?, aS2: get("aS2")?, TS: seconds("TS_ms")? })
         } else {
             None
         },
         yielding: if any(&["cY", "VY", "TY_ms"]) {
-            Some(Yielding {
-                cY: get("cY")?,
-                VY: get("VY")?,
-                TY: seconds("TY_ms")?,
-            })
+            Some(Yielding { cY: get("cY")?, VY: get("VY")?, TY: seconds("TY_ms")? })
         } else {
             None
         },

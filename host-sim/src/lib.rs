@@ -1,4 +1,14 @@
 //! Host side of the muscle model: the independent reference, and the proof of accuracy.
 
 pub mod coefficients;
+pub mod command_line;
+pub mod engine;
+pub mod link;
+pub mod metrics;
+pub mod muscle_file;
+pub mod plot;
 pub mod reference;
+pub mod scenario;
+pub mod tolerance;
+pub mod trace;
+pub mod verify;

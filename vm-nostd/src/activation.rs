@@ -25,23 +25,14 @@ impl ActivationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("activation.scale", self.scale, 0.05, 10.0)?;
         within("activation.exponent", self.exponent, 0.5, 10.0)?;
-        within(
-            "activation.length_dependence",
-            self.length_dependence,
-            0.0,
-            20.0,
-        )
+        within("activation.length_dependence", self.length_dependence, 0.0, 20.0)
     }
 
     /// The longest fascicle length, in L_ce0 and not above `most`, at which n_f is still defined.
     pub(crate) fn longest_length(&self, most: f64) -> f64 {
         let reciprocal = 1.0 + (LEAST_EXPONENT - self.exponent) / self.length_dependence;
         // Without dependence on length the reciprocal is minus infinity: no limit.
-        if reciprocal > 1.0 / most {
-            1.0 / reciprocal
-        } else {
-            most
-        }
+        if reciprocal > 1.0 / most { 1.0 / reciprocal } else { most }
     }
 }
 

@@ -18,7 +18,10 @@ use crate::time_step::TimeStep;
 
 /// gamma = 1 - 1/√2.
 const GAMMA: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
-/// Longest substep of the mechanics, s.
+/// First substep of a tick, s. Inputs jump where a tick begins, and the fascicles follow within
+/// 50 µs: a short first substep resolves what they travel meanwhile.
+const FIRST_SUBSTEP: f64 = 0.05e-3;
+/// Longest of the other substeps, s: they resolve the ringing of a passive muscle.
 const LONGEST_SUBSTEP: f64 = 0.25e-3;
 /// Newton steps per stage, after the branch is known.
 const NEWTON_STEPS: usize = 2;
@@ -48,48 +51,64 @@ pub(crate) struct Contractile<S, const N: usize> {
     pub(crate) passive_floor: S,
 }
 
-/// Coefficients of the implicit step.
+/// Coefficients of the mechanics.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contraction<S> {
     pub(crate) tendon: Tendon<S>,
     /// eta, F0 s/L_ce0.
     viscosity: S,
-    substeps: u8,
-    /// A substep as a share of the tick.
-    share: S,
-    /// gamma times a substep, s, and as a share of the tick.
-    gamma_time: S,
-    gamma_share: S,
-    /// (1 - gamma)/gamma, and that times gamma_time, s.
-    carry: S,
-    carry_time: S,
-    /// Mass over gamma_time, F0 s/L_ce0.
-    inertia: S,
+    first: Substep<S>,
+    other: Substep<S>,
+    others: u8,
     half: S,
     speed: S,
 }
 
+/// Coefficients of a substep of a given length.
+#[derive(Clone, Copy, Debug)]
+struct Substep<S> {
+    /// As a share of the tick.
+    share: S,
+    /// gamma times the substep, s, and as a share of the tick.
+    gamma_time: S,
+    gamma_share: S,
+    /// (1 - gamma) times the substep, s.
+    carry_time: S,
+    /// (1 - gamma)/gamma.
+    carry: S,
+    /// Mass over gamma_time, F0 s/L_ce0.
+    inertia: S,
+}
+
+impl<S: Scalar> Substep<S> {
+    /// A substep of `seconds`, for a mass in F0 s²/L_ce0.
+    fn new(seconds: f64, step: TimeStep, mass: f64) -> Self {
+        let share = seconds / step.seconds();
+        Self {
+            share: S::from_f64(share),
+            gamma_time: S::from_f64(GAMMA * seconds),
+            gamma_share: S::from_f64(GAMMA * share),
+            carry_time: S::from_f64((1.0 - GAMMA) * seconds),
+            carry: S::from_f64((1.0 - GAMMA) / GAMMA),
+            inertia: S::from_f64(mass / (GAMMA * seconds)),
+        }
+    }
+}
+
 impl<S: Scalar> Contraction<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
-        let substeps = libm::ceil(step.seconds() / LONGEST_SUBSTEP - 1e-9);
-        let gamma_time = GAMMA * step.seconds() / substeps;
-        let carry = (1.0 - GAMMA) / GAMMA;
+        let rest = step.seconds() - FIRST_SUBSTEP;
+        // A shortest tick is all first substep; the tolerance is for its rounding.
+        let others = libm::ceil(rest / LONGEST_SUBSTEP - 1e-9);
         let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
-        let tendon = Tendon::new(
-            &params.elements.tendon,
-            params.fascicle_length,
-            params.tendon_length,
-        );
+        let tendon =
+            Tendon::new(&params.elements.tendon, params.fascicle_length, params.tendon_length);
         Self {
             tendon,
             viscosity: S::from_f64(params.elements.parallel.viscosity),
-            substeps: substeps as u8,
-            share: S::from_f64(1.0 / substeps),
-            gamma_time: S::from_f64(gamma_time),
-            gamma_share: S::from_f64(GAMMA / substeps),
-            carry: S::from_f64(carry),
-            carry_time: S::from_f64(carry * gamma_time),
-            inertia: S::from_f64(mass / gamma_time),
+            first: Substep::new(FIRST_SUBSTEP, step, mass),
+            other: Substep::new(rest / others.max(1.0), step, mass),
+            others: others as u8,
             half: S::from_f64(0.5),
             speed: S::from_f64(MAXIMUM_SPEED),
         }
@@ -106,28 +125,41 @@ impl<S: Scalar> Contraction<S> {
         extension: Course<S>,
         contractile: &Contractile<S, N>,
     ) -> Motion<S> {
-        let mut motion = Motion {
-            lengthening: S::ZERO,
-            velocity,
-        };
+        let start = Motion { lengthening: S::ZERO, velocity };
         // Time since the tick's middle, in ticks.
         let mut time = -self.half;
-        for _ in 0..self.substeps {
-            let at_first = time + self.gamma_share;
-            let first = self.stage(motion, at_first, extension, contractile, motion.velocity);
-            let carried = Motion {
-                lengthening: motion.lengthening + self.carry_time * first.velocity,
-                velocity: motion.velocity + self.carry * (first.velocity - motion.velocity),
-            };
-            time = time + self.share;
-            motion = self.stage(carried, time, extension, contractile, first.velocity);
+        let mut motion = self.substep(&self.first, start, time, extension, contractile);
+        time = time + self.first.share;
+        for _ in 0..self.others {
+            motion = self.substep(&self.other, motion, time, extension, contractile);
+            time = time + self.other.share;
         }
         motion
+    }
+
+    /// One substep from `start` at `time`: two implicit stages, at gamma and at its end.
+    fn substep<const N: usize>(
+        &self,
+        substep: &Substep<S>,
+        start: Motion<S>,
+        time: S,
+        extension: Course<S>,
+        contractile: &Contractile<S, N>,
+    ) -> Motion<S> {
+        let at_first = time + substep.gamma_share;
+        let first = self.stage(substep, start, at_first, extension, contractile, start.velocity);
+        let carried = Motion {
+            lengthening: start.lengthening + substep.carry_time * first.velocity,
+            velocity: start.velocity + substep.carry * (first.velocity - start.velocity),
+        };
+        let at_end = time + substep.share;
+        self.stage(substep, carried, at_end, extension, contractile, first.velocity)
     }
 
     /// One implicit stage at `time` from `base`: L = L_b + gamma h V, V = V_b + gamma h dV/dt.
     fn stage<const N: usize>(
         &self,
+        substep: &Substep<S>,
         base: Motion<S>,
         time: S,
         extension: Course<S>,
@@ -136,11 +168,10 @@ impl<S: Scalar> Contraction<S> {
     ) -> Motion<S> {
         let stage = Stage {
             contraction: self,
+            substep,
             base,
             extension: extension.middle + extension.change * time,
-            gains: contractile
-                .gains
-                .map(|gain| gain.middle + gain.change * time),
+            gains: contractile.gains.map(|gain| gain.middle + gain.change * time),
             passive: contractile.passive.middle
                 + contractile.passive.change * time
                 + contractile.passive_slope * base.lengthening,
@@ -148,11 +179,7 @@ impl<S: Scalar> Contraction<S> {
         };
         let (at_zero, _) = stage.residual(true, S::ZERO);
         let lengthening = at_zero < S::ZERO;
-        let mut velocity = if (guess > S::ZERO) == lengthening {
-            guess
-        } else {
-            S::ZERO
-        };
+        let mut velocity = if (guess > S::ZERO) == lengthening { guess } else { S::ZERO };
         for _ in 0..NEWTON_STEPS {
             let (residual, slope) = stage.residual(lengthening, velocity);
             let next = velocity - residual / slope;
@@ -162,16 +189,14 @@ impl<S: Scalar> Contraction<S> {
                 next.min(S::ZERO).max(-self.speed)
             };
         }
-        Motion {
-            lengthening: base.lengthening + self.gamma_time * velocity,
-            velocity,
-        }
+        Motion { lengthening: base.lengthening + substep.gamma_time * velocity, velocity }
     }
 }
 
 /// One stage's equation: inertia (V - V_b) + F_ce'(V) - F_se(L_b + gamma h V) = 0.
 struct Stage<'a, S, const N: usize> {
     contraction: &'a Contraction<S>,
+    substep: &'a Substep<S>,
     contractile: &'a Contractile<S, N>,
     base: Motion<S>,
     extension: S,
@@ -182,9 +207,9 @@ struct Stage<'a, S, const N: usize> {
 impl<S: Scalar, const N: usize> Stage<'_, S, N> {
     /// The residual (F0) and its slope by V, always positive, on one branch of FV.
     fn residual(&self, lengthening: bool, velocity: S) -> (S, S) {
-        let c = self.contraction;
+        let (c, substep) = (self.contraction, self.substep);
         let (mut force, mut slope) = (self.passive, S::ZERO);
-        let resistance = c.viscosity + self.contractile.passive_slope * c.gamma_time;
+        let resistance = c.viscosity + self.contractile.passive_slope * substep.gamma_time;
         force = force + resistance * velocity;
         if force > self.contractile.passive_floor {
             slope = resistance;
@@ -199,11 +224,11 @@ impl<S: Scalar, const N: usize> Stage<'_, S, N> {
         if force < S::ZERO {
             (force, slope) = (S::ZERO, S::ZERO);
         }
-        let lengthening = self.base.lengthening + c.gamma_time * velocity;
+        let lengthening = self.base.lengthening + substep.gamma_time * velocity;
         let (pull, stiffness) = c.tendon.pull(c.tendon.give(self.extension, lengthening));
         (
-            c.inertia * (velocity - self.base.velocity) + force - pull,
-            c.inertia + slope + stiffness * c.gamma_time,
+            substep.inertia * (velocity - self.base.velocity) + force - pull,
+            substep.inertia + slope + stiffness * substep.gamma_time,
         )
     }
 }

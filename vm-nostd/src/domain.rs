@@ -44,10 +44,7 @@ pub(crate) struct Range<S> {
 
 impl<S: Scalar> Range<S> {
     pub(crate) fn new((least, most): (f64, f64)) -> Self {
-        Self {
-            least: S::from_f64(least),
-            most: S::from_f64(most),
-        }
+        Self { least: S::from_f64(least), most: S::from_f64(most) }
     }
 
     /// The nearest value in the range, and whether that is another one.
@@ -94,23 +91,13 @@ impl<S: Scalar> Domain<S> {
     /// The input as the model takes it, and what had to be changed.
     pub(crate) fn admit(&self, input: Input<S>, path_before: S) -> (Input<S>, Status) {
         let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO);
-        let (stimulation_frequency, f) = admit_one(
-            &self.stimulation_frequency,
-            input.stimulation_frequency,
-            S::ZERO,
-        );
+        let (stimulation_frequency, f) =
+            admit_one(&self.stimulation_frequency, input.stimulation_frequency, S::ZERO);
         let (path_length, p) = admit_one(&self.path_length, input.path_length, path_before);
         let status = a.flags(Status::ACTIVATION_CLIPPED, Status::ACTIVATION_NOT_FINITE)
             | f.flags(Status::FREQUENCY_CLIPPED, Status::FREQUENCY_NOT_FINITE)
             | p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE);
-        (
-            Input {
-                activation,
-                path_length,
-                stimulation_frequency,
-            },
-            status,
-        )
+        (Input { activation, path_length, stimulation_frequency }, status)
     }
 }
 

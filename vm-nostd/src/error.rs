@@ -44,16 +44,10 @@ impl fmt::Display for Limit {
         match self {
             Self::Within { least, most } => write!(f, "must be between {least} and {most}"),
             Self::SumIsOne { within } => {
-                write!(
-                    f,
-                    "the fractions of all types must add to 1 (within {within})"
-                )
+                write!(f, "the fractions of all types must add to 1 (within {within})")
             }
             Self::NotBefore { rank } => {
-                write!(
-                    f,
-                    "types are listed in order of rank, and the one before has {rank}"
-                )
+                write!(f, "types are listed in order of rank, and the one before has {rank}")
             }
             Self::AtLeastOneType => f.write_str("a muscle has at least one fibre type"),
         }
@@ -81,11 +75,6 @@ pub(crate) fn within(
     if value >= least && value <= most {
         Ok(())
     } else {
-        Err(ParameterError {
-            field,
-            fiber: None,
-            value,
-            limit: Limit::Within { least, most },
-        })
+        Err(ParameterError { field, fiber: None, value, limit: Limit::Within { least, most } })
     }
 }

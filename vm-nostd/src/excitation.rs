@@ -27,19 +27,9 @@ pub struct ExcitationParams {
 impl ExcitationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("excitation.rise", self.rise, 1e-3, 10.0)?;
-        within(
-            "excitation.rise_per_frequency",
-            self.rise_per_frequency,
-            0.0,
-            10.0,
-        )?;
+        within("excitation.rise_per_frequency", self.rise_per_frequency, 0.0, 10.0)?;
         within("excitation.fall", self.fall, 1e-3, 10.0)?;
-        within(
-            "excitation.fall_per_activation",
-            self.fall_per_activation,
-            0.0,
-            10.0,
-        )
+        within("excitation.fall_per_activation", self.fall_per_activation, 0.0, 10.0)
     }
 }
 
@@ -97,19 +87,11 @@ impl<S: Scalar> Excitation<S> {
 
         let lead = intermediate - effective;
         let excess = intermediate - drive;
-        let (before, after) = if lead >= S::ZERO {
-            (rising, falling)
-        } else {
-            (falling, rising)
-        };
+        let (before, after) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
         // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess.
         let converging = (lead >= S::ZERO) == (excess > S::ZERO);
         let crosses = converging && lead.abs() < excess.abs() * before;
-        let x = if crosses {
-            after + lead / excess * (S::ONE - after / before)
-        } else {
-            before
-        };
+        let x = if crosses { after + lead / excess * (S::ONE - after / before) } else { before };
 
         let x_middle = x * self.half;
         let decay_middle = (-x_middle).exp();

@@ -54,11 +54,7 @@ impl<S: Scalar> ForceLength<S> {
         let exponent = (self.roundness * distance.ln()).exp();
         let value = (-exponent).exp();
         // d|z|^rho/dL = rho |z|^rho / z * dz/dL, with dz/dL = beta L^beta / (L omega).
-        let signed = if offset < S::ZERO {
-            -distance
-        } else {
-            distance
-        };
+        let signed = if offset < S::ZERO { -distance } else { distance };
         let growth = self.roundness * exponent / signed
             * (self.skewness * power * reciprocal * self.per_width);
         (value, -(value * growth))

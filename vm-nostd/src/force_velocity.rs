@@ -38,23 +38,14 @@ impl ForceVelocityParams {
         for coefficient in self.lengthening {
             within("force_velocity.lengthening", coefficient, -100.0, 100.0)?;
         }
-        within(
-            "force_velocity.lengthening_velocity",
-            self.lengthening_velocity,
-            0.01,
-            10.0,
-        )
+        within("force_velocity.lengthening_velocity", self.lengthening_velocity, 0.01, 10.0)
     }
 
     /// The shortest fascicle length, in L_ce0 and not below `least`, from which the shortening
     /// branch has no pole and rises with V.
     pub(crate) fn shortest_length(&self, least: f64) -> f64 {
         let [c0, c1] = self.shortening;
-        if c1 > 0.0 {
-            ((POLE_MARGIN - 1.0 - c0) / c1).max(least)
-        } else {
-            least
-        }
+        if c1 > 0.0 { ((POLE_MARGIN - 1.0 - c0) / c1).max(least) } else { least }
     }
 
     /// Refuses coefficients with which force would not rise with velocity somewhere between two
@@ -62,18 +53,9 @@ impl ForceVelocityParams {
     pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
-        let turning_point = if a2 == 0.0 {
-            least
-        } else {
-            (-0.5 * a1 / a2).clamp(least, most)
-        };
+        let turning_point = if a2 == 0.0 { least } else { (-0.5 * a1 / a2).clamp(least, most) };
         for length in [least, most, turning_point] {
-            within(
-                "force_velocity.shortening",
-                c0 + c1 * length,
-                POLE_MARGIN * 0.5 - 1.0,
-                300.0,
-            )?;
+            within("force_velocity.shortening", c0 + c1 * length, POLE_MARGIN * 0.5 - 1.0, 300.0)?;
             let a = a0 + a1 * length + a2 * length * length;
             within("force_velocity.lengthening", a, -300.0, -1.0)?;
         }
@@ -143,22 +125,11 @@ impl<S: Scalar> VelocityCurve<S> {
     /// FV and its slope (s/L_ce0) on the branch named by `lengthening`, at a velocity of that
     /// side. Faster than V_max, FV is 0: the paper's own expression would push there.
     pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S) {
-        let branch = if lengthening {
-            self.lengthening
-        } else {
-            self.shortening
-        };
+        let branch = if lengthening { self.lengthening } else { self.shortening };
         let inside = velocity.max(self.maximum_velocity);
         let reciprocal = S::ONE / (S::ONE + branch.denominator * inside);
         let value = (S::ONE + branch.numerator * inside) * reciprocal;
         let slope = (branch.numerator - branch.denominator) * (reciprocal * reciprocal);
-        (
-            value,
-            if velocity > self.maximum_velocity {
-                slope
-            } else {
-                S::ZERO
-            },
-        )
+        (value, if velocity > self.maximum_velocity { slope } else { S::ZERO })
     }
 }

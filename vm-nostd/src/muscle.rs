@@ -100,11 +100,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
         params.validate()?;
         let elements = &params.elements;
-        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS {
-            S::ZERO
-        } else {
-            S::from_f64(-1e3)
-        };
+        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { S::ZERO } else { S::from_f64(-1e3) };
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, step),
@@ -123,12 +119,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// parallel elastic element in balance.
     pub fn rest(&self, path_length: S) -> Result<State<S, N>, ParameterError> {
         let range = &self.domain.path_length;
-        within(
-            "path_length",
-            path_length.to_f64(),
-            range.least.to_f64(),
-            range.most.to_f64(),
-        )?;
+        within("path_length", path_length.to_f64(), range.least.to_f64(), range.most.to_f64())?;
         let tendon = &self.contraction.tendon;
         let lengths = &self.domain.fascicle_length;
         let mut least = tendon.extension(path_length, lengths.most);
@@ -148,9 +139,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             fascicle_velocity: S::ZERO,
             path_length,
             effective_activation: S::ZERO,
-            fibers: self
-                .fibers
-                .map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
+            fibers: self.fibers.map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
         })
     }
 
@@ -196,13 +185,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             contractile.passive.middle + contractile.passive_slope * (length - middle);
 
         let stretch = tendon.stretch(input.path_length - state.path_length);
-        let extension = Course {
-            middle: state.tendon_extension + stretch * self.half,
-            change: stretch,
-        };
-        let end = self
-            .contraction
-            .advance(state.fascicle_velocity, extension, &contractile);
+        let extension =
+            Course { middle: state.tendon_extension + stretch * self.half, change: stretch };
+        let end = self.contraction.advance(state.fascicle_velocity, extension, &contractile);
         state.path_length = input.path_length;
         state.fascicle_velocity = end.velocity;
         state.tendon_extension = tendon.give(state.tendon_extension + stretch, end.lengthening);
@@ -214,10 +199,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             kept.yielding = fiber.yielding.advance(kept.yielding, mean);
             kept.yielding_target = target;
         }
-        Output {
-            status,
-            ..self.observe(state)
-        }
+        Output { status, ..self.observe(state) }
     }
 
     /// Keeps length and velocity inside what the state can hold, and says what it had to keep.
@@ -255,11 +237,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let mut gains = [Course::constant(S::ZERO); N];
         let mut compressed = Course::constant(S::ZERO);
         let states = state.fibers.iter_mut();
-        for (((gain, fiber), kept), unit) in gains
-            .iter_mut()
-            .zip(&self.fibers)
-            .zip(states)
-            .zip(recruited)
+        for (((gain, fiber), kept), unit) in
+            gains.iter_mut().zip(&self.fibers).zip(states).zip(recruited)
         {
             let sag = fiber.sag.advance(kept.sag, unit.firing);
             let yielding = fiber.yielding.advance(kept.yielding, kept.yielding_target);

@@ -41,19 +41,9 @@ pub struct FiberType {
 impl FiberType {
     fn validate(&self) -> Result<(), ParameterError> {
         within("rank", f64::from(self.rank), 1.0, 255.0)?;
-        within(
-            "half_force_frequency",
-            self.half_force_frequency,
-            0.5,
-            200.0,
-        )?;
+        within("half_force_frequency", self.half_force_frequency, 0.5, 200.0)?;
         within("minimum_frequency", self.minimum_frequency, 0.0, 5.0)?;
-        within(
-            "maximum_frequency",
-            self.maximum_frequency,
-            self.minimum_frequency,
-            10.0,
-        )?;
+        within("maximum_frequency", self.maximum_frequency, self.minimum_frequency, 10.0)?;
         self.force_length.validate()?;
         self.force_velocity.validate()?;
         self.activation.validate()?;
@@ -134,10 +124,7 @@ impl<const N: usize> MuscleParams<N> {
     /// Length L_max of the fascicles, in L_ce0, when the passive muscle is on its longest path.
     #[doc(alias = "Lmax")]
     pub fn maximum_fascicle_length(&self) -> f64 {
-        let tendon = self
-            .elements
-            .tendon
-            .length_at(self.elements.parallel.force(1.0));
+        let tendon = self.elements.tendon.length_at(self.elements.parallel.force(1.0));
         (self.max_path_length - tendon * self.tendon_length) / self.fascicle_length
     }
 
@@ -145,15 +132,10 @@ impl<const N: usize> MuscleParams<N> {
     /// the force-velocity relation has no pole and n_f is not near 0.
     pub fn fascicle_domain(&self) -> (f64, f64) {
         let (least, most) = FASCICLE_DOMAIN;
-        self.fibers
-            .iter()
-            .fold((least, most), |(least, most), fiber| {
-                let t = &fiber.fiber_type;
-                (
-                    t.force_velocity.shortest_length(least),
-                    t.activation.longest_length(most),
-                )
-            })
+        self.fibers.iter().fold((least, most), |(least, most), fiber| {
+            let t = &fiber.fiber_type;
+            (t.force_velocity.shortest_length(least), t.activation.longest_length(most))
+        })
     }
 
     /// Path lengths, in m, that are taken as they are; others are saturated and flagged.
@@ -170,12 +152,7 @@ impl<const N: usize> MuscleParams<N> {
         within("mass", self.mass, 1e-5, 20.0)?;
         within("fascicle_length", self.fascicle_length, 5e-3, 1.0)?;
         within("tendon_length", self.tendon_length, 1e-3, 2.0)?;
-        within(
-            "recruitment_saturation",
-            self.recruitment_saturation,
-            0.01,
-            1.0,
-        )?;
+        within("recruitment_saturation", self.recruitment_saturation, 0.01, 1.0)?;
         self.elements.validate()?;
         self.validate_fibers()?;
 
@@ -183,12 +160,7 @@ impl<const N: usize> MuscleParams<N> {
             self.max_path_length + (maximum - self.maximum_fascicle_length()) * self.fascicle_length
         };
         let (least, most) = MAXIMUM_FASCICLE_LENGTH;
-        within(
-            "max_path_length",
-            self.max_path_length,
-            path_at(least),
-            path_at(most),
-        )?;
+        within("max_path_length", self.max_path_length, path_at(least), path_at(most))?;
 
         let (shortest, longest) = self.fascicle_domain();
         for (index, fiber) in self.fibers.iter().enumerate() {
@@ -204,10 +176,7 @@ impl<const N: usize> MuscleParams<N> {
                 let most = t.activation.longest_length(FASCICLE_DOMAIN.1);
                 within("activation.length_dependence", most, 1.1, FASCICLE_DOMAIN.1)
             });
-            own.map_err(|error| ParameterError {
-                fiber: Some(index),
-                ..error
-            })?;
+            own.map_err(|error| ParameterError { fiber: Some(index), ..error })?;
         }
         Ok(())
     }
@@ -216,47 +185,25 @@ impl<const N: usize> MuscleParams<N> {
         let mut sum = 0.0;
         let mut rank_before = 0;
         for (index, fiber) in self.fibers.iter().enumerate() {
-            let located = |error| ParameterError {
-                fiber: Some(index),
-                ..error
-            };
+            let located = |error| ParameterError { fiber: Some(index), ..error };
             within("fraction", fiber.fraction, 1e-6, 1.0).map_err(located)?;
             fiber.fiber_type.validate().map_err(located)?;
             let rank = fiber.fiber_type.rank;
             if rank < rank_before {
-                let limit = Limit::NotBefore {
-                    rank: f64::from(rank_before),
-                };
+                let limit = Limit::NotBefore { rank: f64::from(rank_before) };
                 let value = f64::from(rank);
-                return Err(located(ParameterError {
-                    field: "rank",
-                    fiber: None,
-                    value,
-                    limit,
-                }));
+                return Err(located(ParameterError { field: "rank", fiber: None, value, limit }));
             }
             rank_before = rank;
             sum += fiber.fraction;
         }
         if N == 0 {
             let limit = Limit::AtLeastOneType;
-            return Err(ParameterError {
-                field: "fibers",
-                fiber: None,
-                value: 0.0,
-                limit,
-            });
+            return Err(ParameterError { field: "fibers", fiber: None, value: 0.0, limit });
         }
         if libm::fabs(sum - 1.0) > FRACTION_SUM_TOLERANCE {
-            let limit = Limit::SumIsOne {
-                within: FRACTION_SUM_TOLERANCE,
-            };
-            return Err(ParameterError {
-                field: "fraction",
-                fiber: None,
-                value: sum,
-                limit,
-            });
+            let limit = Limit::SumIsOne { within: FRACTION_SUM_TOLERANCE };
+            return Err(ParameterError { field: "fraction", fiber: None, value: sum, limit });
         }
         Ok(())
     }

@@ -109,10 +109,6 @@ impl<S: Scalar> Compression<S> {
         let growth = (self.steepness * (fascicle_length - self.onset_length)).exp();
         let force = self.strength * (growth - S::ONE);
         let slope = self.strength * self.steepness * growth;
-        if force < S::ZERO {
-            (force, slope)
-        } else {
-            (S::ZERO, S::ZERO)
-        }
+        if force < S::ZERO { (force, slope) } else { (S::ZERO, S::ZERO) }
     }
 }

@@ -23,22 +23,14 @@ pub mod paper_table_1 {
 
     /// Elements that all fibre types share.
     pub const ELEMENTS: ElementParams = ElementParams {
-        tendon: TendonParams {
-            stiffness: 27.8,
-            toe: 0.0047,
-            slack_length: 0.964,
-        },
+        tendon: TendonParams { stiffness: 27.8, toe: 0.0047, slack_length: 0.964 },
         parallel: ParallelParams {
             stiffness: 23.0,
             toe: 0.046,
             slack_length: 1.17,
             viscosity: 0.01,
         },
-        compression: CompressionParams {
-            strength: -0.02,
-            steepness: -21.0,
-            onset_length: 0.7,
-        },
+        compression: CompressionParams { strength: -0.02, steepness: -21.0, onset_length: 0.7 },
         specific_tension: 31.8 * 1e4,
         density: 1.06 * 1e3,
     };
@@ -49,22 +41,14 @@ pub mod paper_table_1 {
         half_force_frequency: 12.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 1.12,
-            skewness: 2.3,
-            roundness: 1.62,
-        },
+        force_length: ForceLengthParams { width: 1.12, skewness: 2.3, roundness: 1.62 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -7.88,
             shortening: [5.88, 0.0],
             lengthening: [-4.7, 8.41, -5.34],
             lengthening_velocity: 0.35,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.1,
-            length_dependence: 5.0,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.1, length_dependence: 5.0 },
         excitation: ExcitationParams {
             rise: ms(34.3),
             rise_per_frequency: ms(22.7),
@@ -72,11 +56,7 @@ pub mod paper_table_1 {
             fall_per_activation: ms(25.2),
         },
         sag: None,
-        yielding: Some(YieldParams {
-            depth: 0.35,
-            velocity: 0.1,
-            time_constant: ms(200.0),
-        }),
+        yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
 
     /// Fast fibres.
@@ -85,33 +65,21 @@ pub mod paper_table_1 {
         half_force_frequency: 20.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 0.75,
-            skewness: 1.55,
-            roundness: 2.12,
-        },
+        force_length: ForceLengthParams { width: 0.75, skewness: 1.55, roundness: 2.12 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -9.15,
             shortening: [-5.7, 9.18],
             lengthening: [-1.53, 0.0, 0.0],
             lengthening_velocity: 0.69,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.1,
-            length_dependence: 3.3,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.1, length_dependence: 3.3 },
         excitation: ExcitationParams {
             rise: ms(20.6),
             rise_per_frequency: ms(13.6),
             fall: ms(28.2),
             fall_per_activation: ms(15.1),
         },
-        sag: Some(SagParams {
-            resting_level: 1.76,
-            firing_level: 0.96,
-            time_constant: ms(43.0),
-        }),
+        sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };
 }
@@ -122,11 +90,7 @@ pub mod human_vm4 {
 
     /// Elements that all fibre types share.
     pub const ELEMENTS: ElementParams = ElementParams {
-        tendon: TendonParams {
-            stiffness: 27.8,
-            toe: 0.0047,
-            slack_length: 0.964,
-        },
+        tendon: TendonParams { stiffness: 27.8, toe: 0.0047, slack_length: 0.964 },
         parallel: ParallelParams {
             stiffness: 23.0,
             toe: 0.046,
@@ -148,22 +112,14 @@ pub mod human_vm4 {
         half_force_frequency: 6.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 1.12435451050223,
-            skewness: 2.3,
-            roundness: 1.62,
-        },
+        force_length: ForceLengthParams { width: 1.12435451050223, skewness: 2.3, roundness: 1.62 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -3.94,
             shortening: [5.88, 0.0],
             lengthening: [-4.7, 8.41, -5.31],
             lengthening_velocity: 0.17467980295566504,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 5.0,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 5.0 },
         excitation: ExcitationParams {
             rise: ms(68.56666666666666),
             rise_per_frequency: ms(45.33333333333333),
@@ -171,11 +127,7 @@ pub mod human_vm4 {
             fall_per_activation: ms(50.43333333333333),
         },
         sag: None,
-        yielding: Some(YieldParams {
-            depth: 0.35,
-            velocity: 0.1,
-            time_constant: ms(200.0),
-        }),
+        yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
 
     /// Slow fibres.
@@ -184,22 +136,14 @@ pub mod human_vm4 {
         half_force_frequency: 12.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 1.12435451050223,
-            skewness: 2.3,
-            roundness: 1.62,
-        },
+        force_length: ForceLengthParams { width: 1.12435451050223, skewness: 2.3, roundness: 1.62 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -7.88,
             shortening: [5.88, 0.0],
             lengthening: [-4.7, 8.41, -5.31],
             lengthening_velocity: 0.34935960591133003,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 5.0,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 5.0 },
         excitation: ExcitationParams {
             rise: ms(34.28333333333334),
             rise_per_frequency: ms(22.666666666666668),
@@ -207,11 +151,7 @@ pub mod human_vm4 {
             fall_per_activation: ms(25.21666666666667),
         },
         sag: None,
-        yielding: Some(YieldParams {
-            depth: 0.35,
-            velocity: 0.1,
-            time_constant: ms(200.0),
-        }),
+        yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
 
     /// Fast fibres.
@@ -231,22 +171,14 @@ pub mod human_vm4 {
             lengthening: [-1.53, 0.0, 0.0],
             lengthening_velocity: 0.68637,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 3.31,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 3.31 },
         excitation: ExcitationParams {
             rise: ms(20.57),
             rise_per_frequency: ms(13.6),
             fall: ms(28.22),
             fall_per_activation: ms(15.13),
         },
-        sag: Some(SagParams {
-            resting_level: 1.76,
-            firing_level: 0.96,
-            time_constant: ms(43.0),
-        }),
+        sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };
 }
@@ -257,22 +189,14 @@ pub mod feline_vm4 {
 
     /// Elements that all fibre types share.
     pub const ELEMENTS: ElementParams = ElementParams {
-        tendon: TendonParams {
-            stiffness: 27.8,
-            toe: 0.0047,
-            slack_length: 0.964,
-        },
+        tendon: TendonParams { stiffness: 27.8, toe: 0.0047, slack_length: 0.964 },
         parallel: ParallelParams {
             stiffness: 23.0,
             toe: 0.046,
             slack_length: 1.17,
             viscosity: 0.01,
         },
-        compression: CompressionParams {
-            strength: -0.02,
-            steepness: -18.7,
-            onset_length: 0.79,
-        },
+        compression: CompressionParams { strength: -0.02, steepness: -18.7, onset_length: 0.79 },
         specific_tension: 31.8 * 1e4,
         density: 1.06 * 1e3,
     };
@@ -283,22 +207,14 @@ pub mod feline_vm4 {
         half_force_frequency: 8.5,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 1.26,
-            skewness: 2.3,
-            roundness: 1.62,
-        },
+        force_length: ForceLengthParams { width: 1.26, skewness: 2.3, roundness: 1.62 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -4.06,
             shortening: [5.88, 0.0],
             lengthening: [-4.7, 8.41, -5.31],
             lengthening_velocity: 0.18,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 5.0,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 5.0 },
         excitation: ExcitationParams {
             rise: ms(48.4),
             rise_per_frequency: ms(32.0),
@@ -306,11 +222,7 @@ pub mod feline_vm4 {
             fall_per_activation: ms(35.6),
         },
         sag: None,
-        yielding: Some(YieldParams {
-            depth: 0.35,
-            velocity: 0.1,
-            time_constant: ms(200.0),
-        }),
+        yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
 
     /// Slow fibres.
@@ -319,22 +231,14 @@ pub mod feline_vm4 {
         half_force_frequency: 20.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 1.26,
-            skewness: 2.3,
-            roundness: 1.62,
-        },
+        force_length: ForceLengthParams { width: 1.26, skewness: 2.3, roundness: 1.62 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -9.552941176470588,
             shortening: [5.88, 0.0],
             lengthening: [-4.7, 8.41, -5.31],
             lengthening_velocity: 0.4235294117647059,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 5.0,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 5.0 },
         excitation: ExcitationParams {
             rise: ms(20.57),
             rise_per_frequency: ms(13.6),
@@ -342,11 +246,7 @@ pub mod feline_vm4 {
             fall_per_activation: ms(15.13),
         },
         sag: None,
-        yielding: Some(YieldParams {
-            depth: 0.35,
-            velocity: 0.1,
-            time_constant: ms(200.0),
-        }),
+        yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
 
     /// Fast fibres.
@@ -355,33 +255,21 @@ pub mod feline_vm4 {
         half_force_frequency: 34.0,
         minimum_frequency: 0.5,
         maximum_frequency: 2.0,
-        force_length: ForceLengthParams {
-            width: 0.81,
-            skewness: 1.55,
-            roundness: 2.12,
-        },
+        force_length: ForceLengthParams { width: 0.81, skewness: 1.55, roundness: 2.12 },
         force_velocity: ForceVelocityParams {
             maximum_velocity: -14.0,
             shortening: [-5.7, 9.18],
             lengthening: [-1.53, 0.0, 0.0],
             lengthening_velocity: 1.05,
         },
-        activation: ActivationParams {
-            scale: 0.56,
-            exponent: 2.11,
-            length_dependence: 3.31,
-        },
+        activation: ActivationParams { scale: 0.56, exponent: 2.11, length_dependence: 3.31 },
         excitation: ExcitationParams {
             rise: ms(12.1),
             rise_per_frequency: ms(8.0),
             fall: ms(16.6),
             fall_per_activation: ms(8.9),
         },
-        sag: Some(SagParams {
-            resting_level: 1.76,
-            firing_level: 0.96,
-            time_constant: ms(43.0),
-        }),
+        sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };
 }

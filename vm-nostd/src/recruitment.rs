@@ -47,10 +47,7 @@ pub struct Course<S> {
 
 impl<S: Scalar> Course<S> {
     pub(crate) fn constant(value: S) -> Self {
-        Self {
-            middle: value,
-            change: S::ZERO,
-        }
+        Self { middle: value, change: S::ZERO }
     }
 }
 

@@ -41,9 +41,8 @@ pub(crate) struct Sag<S> {
 impl<S: Scalar> Sag<S> {
     pub(crate) fn new(params: Option<&SagParams>, step: TimeStep) -> Self {
         // Without sag both levels are 1, and so is S from the start.
-        let (resting, firing, time_constant) = params.map_or((1.0, 1.0, 1.0), |p| {
-            (p.resting_level, p.firing_level, p.time_constant)
-        });
+        let (resting, firing, time_constant) =
+            params.map_or((1.0, 1.0, 1.0), |p| (p.resting_level, p.firing_level, p.time_constant));
         Self {
             resting_level: S::from_f64(resting),
             firing_level: S::from_f64(firing),
@@ -65,9 +64,5 @@ pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
         return if above_end { S::ONE } else { S::ZERO };
     }
     let share_before = (level - start) / (end - start);
-    if above_end {
-        S::ONE - share_before
-    } else {
-        share_before
-    }
+    if above_end { S::ONE - share_before } else { share_before }
 }

@@ -10,9 +10,5 @@ pub(crate) fn softplus<S: Scalar>(x: S) -> (S, S) {
     let sum = S::ONE + decay;
     let tail = sum.ln();
     let share = S::ONE / sum;
-    if x > S::ZERO {
-        (x + tail, share)
-    } else {
-        (tail, decay * share)
-    }
+    if x > S::ZERO { (x + tail, share) } else { (tail, decay * share) }
 }

@@ -72,10 +72,7 @@ impl fmt::Display for RestoreError {
         match self {
             Self::Length { expected } => write!(f, "a saved state has {expected} words"),
             Self::Value { word } => {
-                write!(
-                    f,
-                    "word {word} of the saved state is outside the muscle's range"
-                )
+                write!(f, "word {word} of the saved state is outside the muscle's range")
             }
         }
     }
@@ -118,9 +115,7 @@ impl<S: Scalar, const N: usize> State<S, N> {
         let mut words = words.into_iter();
         let mut count = 0;
         let mut next = |within: &dyn Fn(S) -> bool| {
-            let length = RestoreError::Length {
-                expected: Self::WORDS,
-            };
+            let length = RestoreError::Length { expected: Self::WORDS };
             let value = S::from_bits(words.next().ok_or(length)?);
             if !within(value) {
                 return Err(RestoreError::Value { word: count });
@@ -154,9 +149,7 @@ impl<S: Scalar, const N: usize> State<S, N> {
             };
         }
         if words.next().is_some() {
-            return Err(RestoreError::Length {
-                expected: Self::WORDS,
-            });
+            return Err(RestoreError::Length { expected: Self::WORDS });
         }
         Ok(state)
     }

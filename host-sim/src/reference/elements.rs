@@ -48,18 +48,12 @@ pub fn activation_frequency(t: &FiberType, f: f64, l: f64, y: f64, s: f64) -> f6
 
 /// Rise or fall time of excitation, s: `rising` = Tf1 L² + Tf2 f_env, else (Tf3 + Tf4 a)/L.
 pub fn excitation_time(t: &FiberType, rising: bool, l: f64, f_env: f64, a: f64) -> f64 {
-    if rising {
-        t.Tf1 * l * l + t.Tf2 * f_env
-    } else {
-        (t.Tf3 + t.Tf4 * a) / l
-    }
+    if rising { t.Tf1 * l * l + t.Tf2 * f_env } else { (t.Tf3 + t.Tf4 * a) / l }
 }
 
 /// Yield: dY/dt, 1/s; 0 for a type that does not yield.
 pub fn yielding_rate(t: &FiberType, y: f64, v: f64) -> f64 {
-    t.yielding.map_or(0.0, |p| {
-        (1.0 - p.cY * (1.0 - (-v.abs() / p.VY).exp()) - y) / p.TY
-    })
+    t.yielding.map_or(0.0, |p| (1.0 - p.cY * (1.0 - (-v.abs() / p.VY).exp()) - y) / p.TY)
 }
 
 /// Sag: dS/dt, 1/s; 0 for a type that does not sag.

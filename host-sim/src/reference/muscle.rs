@@ -3,10 +3,7 @@
 /// Coefficients of the elements that all fibre types share (`elements.csv`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)] // the paper's symbols
-#[expect(
-    missing_docs,
-    reason = "the names are the paper's symbols, explained in elements.rs"
-)]
+#[expect(missing_docs, reason = "the names are the paper's symbols, explained in elements.rs")]
 pub struct Elements {
     pub cT: f64,
     pub kT: f64,
@@ -49,10 +46,7 @@ pub struct Yielding {
 /// One row of `fibers.csv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
-#[expect(
-    missing_docs,
-    reason = "the names are the paper's symbols, explained in elements.rs"
-)]
+#[expect(missing_docs, reason = "the names are the paper's symbols, explained in elements.rs")]
 pub struct FiberType {
     pub rank: u8,
     /// pps.

@@ -24,19 +24,10 @@ pub fn effective_activation_rate(u: f64, u_eff: f64) -> f64 {
 pub fn weights(thresholds: &[f64], u_eff: f64) -> Vec<f64> {
     let excess: Vec<f64> = thresholds
         .iter()
-        .map(|&threshold| {
-            if u_eff >= threshold {
-                u_eff - threshold
-            } else {
-                0.0
-            }
-        })
+        .map(|&threshold| if u_eff >= threshold { u_eff - threshold } else { 0.0 })
         .collect();
     let sum: f64 = excess.iter().sum();
-    excess
-        .iter()
-        .map(|&e| if sum > 0.0 { e / sum } else { 0.0 })
-        .collect()
+    excess.iter().map(|&e| if sum > 0.0 { e / sum } else { 0.0 }).collect()
 }
 
 /// f_env of each type, in f0.5, for raw activation `u` and stimulation frequency `f_stim` (pps).

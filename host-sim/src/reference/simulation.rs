@@ -78,15 +78,7 @@ impl Simulation {
             state[at + Y] = 1.0;
             state[at + S] = fiber.fiber_type.sag.map_or(1.0, |sag| sag.aS1);
         }
-        Self {
-            muscle,
-            mode,
-            time_step,
-            state,
-            path_length,
-            first_step: 0.0,
-            tick: 0,
-        }
+        Self { muscle, mode, time_step, state, path_length, first_step: 0.0, tick: 0 }
     }
 
     /// The state as a sample.
@@ -141,10 +133,7 @@ impl Simulation {
             OutputType::Sparse,
         );
         self.tick += 1;
-        stepper.integrate().map_err(|source| SolverError {
-            tick: self.tick,
-            source,
-        })?;
+        stepper.integrate().map_err(|source| SolverError { tick: self.tick, source })?;
         let times = stepper.x_out();
         // The last step is cut to end with the tick; the one before tells the size to go on with.
         self.first_step = match times.as_slice() {
@@ -213,13 +202,7 @@ impl System<f64, DVector<f64>> for Tick<'_> {
                     let weight = u_eff * weights[i];
                     (f_eff, f_env, f_eff >= 0.1, weight, weight)
                 }
-                Mode::Fes => (
-                    f_env,
-                    self.u,
-                    f_env > 0.1,
-                    f_eff * fiber.fraction,
-                    fiber.fraction,
-                ),
+                Mode::Fes => (f_env, self.u, f_env > 0.1, f_eff * fiber.fraction, fiber.fraction),
             };
             let af = element::activation_frequency(t, f, l, y[at + Y], y[at + S]);
             let slowing = match self.mode {

@@ -99,11 +99,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         let activation = input.activation;
         let start = state.effective_activation;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
-        let lag = if activation >= start {
-            &self.rise
-        } else {
-            &self.fall
-        };
+        let lag = if activation >= start { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
         let end = lag.at_end(start, activation);
         state.effective_activation = end;
@@ -125,11 +121,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             compression_weight: Course::constant(S::ZERO),
         }; N];
         let fibers = state.fibers.iter_mut();
-        for (((result, unit), fiber), excitation) in recruited
-            .iter_mut()
-            .zip(&self.units)
-            .zip(fibers)
-            .zip(excitations)
+        for (((result, unit), fiber), excitation) in
+            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
         {
             let drive = unit.firing_frequency(activation);
             let before = fiber.effective_frequency;
@@ -148,10 +141,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 let excess = middle - unit.threshold;
                 let value = middle * excess * per_sum;
                 let slope = (middle + excess - count * value) * per_sum;
-                Course {
-                    middle: value,
-                    change: slope * (end - start),
-                }
+                Course { middle: value, change: slope * (end - start) }
             } else {
                 Course::constant(S::ZERO)
             };

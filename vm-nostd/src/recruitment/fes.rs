@@ -57,11 +57,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N] {
-        let slowing = if input.activation > S::ZERO {
-            S::ONE
-        } else {
-            S::ZERO
-        };
+        let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
         let mut recruited = [Recruited {
             frequency: Course::constant(S::ZERO),
             firing: S::ZERO,
@@ -69,11 +65,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             compression_weight: Course::constant(S::ZERO),
         }; N];
         let fibers = state.fibers.iter_mut();
-        for (((result, unit), fiber), excitation) in recruited
-            .iter_mut()
-            .zip(&self.units)
-            .zip(fibers)
-            .zip(excitations)
+        for (((result, unit), fiber), excitation) in
+            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
         {
             let frequency = input.stimulation_frequency * unit.per_half_force_frequency;
             let before = fiber.effective_frequency;
@@ -88,11 +81,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             fiber.effective_frequency = excited.effective;
             *result = Recruited {
                 frequency: Course::constant(frequency),
-                firing: if frequency > self.firing {
-                    S::ONE
-                } else {
-                    S::ZERO
-                },
+                firing: if frequency > self.firing { S::ONE } else { S::ZERO },
                 weight: Course {
                     middle: unit.fraction * excited.effective_at_middle,
                     change: unit.fraction * (excited.effective - before),

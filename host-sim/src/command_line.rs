@@ -1,0 +1,232 @@
+//! The command line `vm`.
+
+use crate::engine::{self, Arithmetic};
+use crate::link;
+use crate::muscle_file;
+use crate::plot::{self, Series};
+use crate::reference::Mode;
+use crate::trace::{self, InputTrace, OutputRow};
+use crate::verify::{self, Report};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use comfy_table::{CellAlignment, Table, presets};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Virtual Muscle on the host: run a muscle, verify the arithmetics, plot a run.
+#[derive(Debug, Parser)]
+#[command(name = "vm", version)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a muscle over a file of inputs.
+    Run(RunArgs),
+    /// Compare every arithmetic with the reference, and the reference with the authors' vectors
+    /// (what `vm` does without a command).
+    Verify(VerifyArgs),
+    /// Draw a run as SVG.
+    Plot(PlotArgs),
+}
+
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// The muscle, in TOML.
+    #[arg(long)]
+    muscle: PathBuf,
+    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick.
+    #[arg(long)]
+    input: PathBuf,
+    /// Where the outputs go, in CSV.
+    #[arg(long)]
+    output: PathBuf,
+    /// How the muscle is recruited.
+    #[arg(long, value_enum)]
+    mode: ModeName,
+    /// What it is computed in.
+    #[arg(long, value_enum)]
+    arithmetic: Arithmetic,
+}
+
+#[derive(Debug, Default, Args)]
+struct VerifyArgs {
+    /// Print the rows as a JSON array instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct PlotArgs {
+    /// Outputs of a run.
+    #[arg(long)]
+    run: PathBuf,
+    /// Inputs of that run, to be drawn below.
+    #[arg(long)]
+    input: Option<PathBuf>,
+    /// Where the picture goes, in SVG.
+    #[arg(long)]
+    output: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ModeName {
+    /// Natural continuous recruitment.
+    Continuous,
+    /// Intramuscular FES.
+    Fes,
+}
+
+impl From<ModeName> for Mode {
+    fn from(name: ModeName) -> Self {
+        match name {
+            ModeName::Continuous => Self::Continuous,
+            ModeName::Fes => Self::Fes,
+        }
+    }
+}
+
+/// What the process exits with when its input is refused.
+const REFUSED: u8 = 2;
+
+/// Runs the command line: 0 if all is well, 1 if `verify` found a failure, 2 if the input was
+/// refused.
+pub fn main() -> ExitCode {
+    let command = CommandLine::parse().command.unwrap_or(Command::Verify(VerifyArgs::default()));
+    let done = match command {
+        Command::Run(args) => run(&args).map(|()| true),
+        Command::Verify(args) => verify_all(&args),
+        Command::Plot(args) => draw(&args).map(|()| true),
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("vm: {error}");
+            ExitCode::from(REFUSED)
+        }
+    }
+}
+
+fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
+    let muscle = muscle_file::read(&args.muscle)?.muscle;
+    let trace = trace::read_inputs(&args.input)?;
+    let (shortest, longest) = link::path_domain(&muscle);
+    let first = trace.inputs[0].path_length;
+    if !(shortest..=longest).contains(&first) {
+        let problem = format!(
+            "{first}: the muscle's path is between {shortest:.6} and {longest:.6} m, \
+             and the first row is where it rests"
+        );
+        return Err(trace::cell_error(&args.input, 2, "path_length_m", problem).into());
+    }
+    let rows: Vec<OutputRow> = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?
+        .into_iter()
+        .enumerate()
+        .map(|(row, (sample, status))| OutputRow {
+            time: trace.time(row),
+            sample,
+            status: engine::status_names(status),
+        })
+        .collect();
+    trace::write_outputs(&args.output, &rows)?;
+    Ok(())
+}
+
+fn verify_all(args: &VerifyArgs) -> Result<bool, Box<dyn Error>> {
+    let report = verify::verify()?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&report.rows)?);
+    } else {
+        println!("{}", table(&report));
+    }
+    for entry in &report.unused {
+        eprintln!("vm: no row uses the tolerance {entry}");
+    }
+    for row in report.rows.iter().filter(|row| !row.pass) {
+        eprintln!("vm: {} {} {}: {}", row.scenario, row.mode, row.arithmetic, row.problem);
+    }
+    if report.passed() && !args.json {
+        println!("{} rows, all within their tolerances", report.rows.len());
+    }
+    Ok(report.passed())
+}
+
+fn table(report: &Report) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "scenario",
+        "mode",
+        "arithmetic",
+        "against",
+        "max % F0",
+        "rms % F0",
+        "bias % F0",
+        "tolerance",
+        "pass",
+    ]);
+    for row in &report.rows {
+        table.add_row([
+            row.scenario.clone(),
+            row.mode.clone(),
+            row.arithmetic.clone(),
+            row.against.clone(),
+            format!("{:.5}", row.max_pct_f0),
+            format!("{:.5}", row.rms_pct_f0),
+            format!("{:+.5}", row.bias_pct_f0),
+            format!("{:.5}", row.tolerance_pct_f0),
+            if row.pass { "yes" } else { "NO" }.to_owned(),
+        ]);
+    }
+    for column in 4..8 {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn draw(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
+    let bytes = std::fs::read(&args.run).map_err(|e| format!("{}: {e}", args.run.display()))?;
+    let columns = &trace::OUTPUT_COLUMNS[..4];
+    let rows = trace::numbers(&bytes, &args.run, columns)?;
+    if rows.len() < 2 {
+        let problem = format!("{} rows: a plot needs at least 2", rows.len());
+        return Err(trace::cell_error(&args.run, 2, "t_s", problem).into());
+    }
+    let labels = ["force (N)", "length (L0)", "velocity (L0/s)"];
+    let mut series: Vec<Series> = labels
+        .iter()
+        .enumerate()
+        .map(|(index, label)| Series {
+            label,
+            points: rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect(),
+        })
+        .collect();
+    if let Some(path) = &args.input {
+        series.extend(input_series(&trace::read_inputs(path)?));
+    }
+    let title = args.run.file_name().map_or(Path::new("run"), Path::new);
+    let svg = plot::draw(&title.display().to_string(), &series)?;
+    trace::write_atomically(&args.output, svg.as_bytes())?;
+    Ok(())
+}
+
+fn input_series(trace: &InputTrace) -> [Series; 3] {
+    let points = |value: fn(&crate::reference::Input) -> f64| {
+        trace
+            .inputs
+            .iter()
+            .enumerate()
+            .map(|(row, input)| (trace.time(row), value(input)))
+            .collect()
+    };
+    [
+        Series { label: "activation", points: points(|input| input.activation) },
+        Series { label: "path (m)", points: points(|input| input.path_length) },
+        Series { label: "stimulation (pps)", points: points(|input| input.stimulation_frequency) },
+    ]
+}

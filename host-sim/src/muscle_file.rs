@@ -1,0 +1,198 @@
+//! A muscle described in TOML: read, resolved against the published sets, and validated.
+
+use crate::coefficients::{self, Row, RowError};
+use crate::link;
+use crate::reference::{Fiber, Muscle};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Why a muscle file was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum MuscleFileError {
+    /// The file could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, an unknown or missing key, or a value of the wrong type.
+    #[error("{}: {message}", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, key and reason.
+        message: String,
+    },
+    /// A value that no muscle can have.
+    #[error("{}: {key} = {value}: {limit}", path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// The key, with its table.
+        key: String,
+        /// The refused value, as in the file.
+        value: String,
+        /// What it must be.
+        limit: String,
+    },
+}
+
+/// The file as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MuscleFile {
+    name: String,
+    mass_g: f64,
+    fascicle_length_cm: f64,
+    tendon_length_cm: f64,
+    max_path_length_cm: f64,
+    #[serde(default = "default_recruitment_saturation")]
+    recruitment_saturation: f64,
+    #[serde(default = "default_coefficients")]
+    coefficients: String,
+    #[serde(default)]
+    fiber: Vec<FiberTable>,
+}
+
+#[derive(Debug, Deserialize)]
+struct FiberTable {
+    preset: Option<String>,
+    fraction: f64,
+    units: Option<i64>,
+    #[serde(flatten)]
+    overrides: BTreeMap<String, toml::Value>,
+}
+
+fn default_recruitment_saturation() -> f64 {
+    0.8
+}
+
+fn default_coefficients() -> String {
+    coefficients::DEFAULT_SET.to_owned()
+}
+
+/// A muscle and what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMuscle {
+    /// Name, from the file.
+    pub name: String,
+    /// The muscle, its fibre types in order of rank.
+    pub muscle: Muscle,
+}
+
+/// Reads and validates a muscle file.
+pub fn read(path: &Path) -> Result<NamedMuscle, MuscleFileError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|source| MuscleFileError::Read { path: path.to_owned(), source })?;
+    parse(&text, path)
+}
+
+/// Parses and validates the text of a muscle file; `path` is for the messages.
+pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
+    let file: MuscleFile = toml::from_str(text).map_err(|error| MuscleFileError::Parse {
+        path: path.to_owned(),
+        message: error.to_string().trim_end().to_owned(),
+    })?;
+    let refuse = |key: String, value: String, limit: String| MuscleFileError::Value {
+        path: path.to_owned(),
+        key,
+        value,
+        limit,
+    };
+    let elements = coefficients::elements(&file.coefficients).ok_or_else(|| {
+        let sets: Vec<String> = coefficients::element_rows().into_iter().map(|(s, _)| s).collect();
+        refuse(
+            "coefficients".to_owned(),
+            format!("\"{}\"", file.coefficients),
+            format!("must be one of {}", sets.join(", ")),
+        )
+    })?;
+    let fibers: Vec<Fiber> = file
+        .fiber
+        .iter()
+        .enumerate()
+        .map(|(index, table)| {
+            fiber(table).map_err(|(key, value, limit)| {
+                refuse(format!("fiber[{index}].{key}"), value, limit)
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    let mut order: Vec<usize> = (0..fibers.len()).collect();
+    order.sort_by_key(|&index| fibers[index].fiber_type.rank);
+    let muscle = Muscle {
+        mass: file.mass_g * 1e-3,
+        L_ce0: file.fascicle_length_cm * 1e-2,
+        L_se0: file.tendon_length_cm * 1e-2,
+        L_mt_max: file.max_path_length_cm * 1e-2,
+        U_r: file.recruitment_saturation,
+        elements,
+        fibers: order.iter().map(|&index| fibers[index]).collect(),
+    };
+    link::validate(&muscle).map_err(|refusal| {
+        let key = match refusal.fiber {
+            Some(index) => format!("fiber[{}].{}", order[index], refusal.key),
+            None => refusal.key,
+        };
+        refuse(key, refusal.value, refusal.limit)
+    })?;
+    Ok(NamedMuscle { name: file.name, muscle })
+}
+
+/// A fibre table's key, value and the limit it broke.
+type Refusal = (String, String, String);
+
+fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
+    let mut row = match &table.preset {
+        None => Row::new(),
+        Some(preset) => coefficients::fiber_row(preset).ok_or_else(|| {
+            let known: Vec<String> =
+                coefficients::fiber_rows().into_iter().map(|(name, _)| name).collect();
+            let limit = format!("must be one of {}", known.join(", "));
+            ("preset".to_owned(), format!("\"{preset}\""), limit)
+        })?,
+    };
+    let columns = coefficients::fiber_columns();
+    for (key, value) in &table.overrides {
+        if !columns.contains(key) {
+            let limit = format!(
+                "unknown key; a fibre has preset, fraction, units and the coefficients {}",
+                columns.join(", ")
+            );
+            return Err((key.clone(), value.to_string(), limit));
+        }
+        let number = match value {
+            toml::Value::Float(number) => *number,
+            toml::Value::Integer(number) => *number as f64,
+            _ => return Err((key.clone(), value.to_string(), "must be a number".to_owned())),
+        };
+        if !number.is_finite() {
+            return Err((key.clone(), value.to_string(), "must be finite".to_owned()));
+        }
+        row.insert(key.clone(), number);
+    }
+    if let Some(units) = table.units
+        && units < 1
+    {
+        let limit = "must be a whole number of at least 1".to_owned();
+        return Err(("units".to_owned(), units.to_string(), limit));
+    }
+    // Effective length is of a mode to come; its time constant is checked all the same.
+    if let Some(&time_constant) = row.get("TL_ms")
+        && time_constant <= 0.0
+    {
+        let limit = "must be more than 0".to_owned();
+        return Err(("TL_ms".to_owned(), time_constant.to_string(), limit));
+    }
+    let fiber_type = coefficients::fiber_type(&row).map_err(|error| match error {
+        RowError::Missing(name) => {
+            (name.to_owned(), "(none)".to_owned(), "has no preset to come from: give it".to_owned())
+        }
+        RowError::Rank(rank) => {
+            ("rank".to_owned(), rank.to_string(), "must be a whole number from 1 to 255".to_owned())
+        }
+    })?;
+    Ok(Fiber { fraction: table.fraction, fiber_type })
+}

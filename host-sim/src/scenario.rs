@@ -1,0 +1,191 @@
+//! What the arithmetics are compared on: the authors' vectors, and inputs of our own that are
+//! harder in one way or another.
+
+use crate::coefficients;
+use crate::reference::{Fiber, Input, Mode, Muscle};
+use crate::trace::{self, InputTrace};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// A muscle, a mode and inputs.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Name, with the time step where it is not 1 ms.
+    pub name: String,
+    /// The muscle.
+    pub muscle: Muscle,
+    /// The recruitment mode.
+    pub mode: Mode,
+    /// The inputs.
+    pub trace: InputTrace,
+    /// Tendon force of the authors' program at every row, N.
+    pub vector: Option<Vec<f64>>,
+}
+
+/// The paper's validation muscle, "deltoid posterior".
+pub fn paper_muscle() -> Muscle {
+    Muscle {
+        mass: 97.5e-3,
+        L_ce0: 0.11,
+        L_se0: 0.02,
+        L_mt_max: 0.184,
+        U_r: 0.8,
+        elements: coefficients::elements(coefficients::DEFAULT_SET).expect("the default set"),
+        fibers: vec![preset("paper-table-1/slow", 0.6), preset("paper-table-1/fast", 0.4)],
+    }
+}
+
+/// A small human hand muscle with all three fibre types and a long tendon: 4 g, 3.2 cm of
+/// fascicle, 6 cm of tendon.
+fn hand_muscle() -> Muscle {
+    Muscle {
+        mass: 4e-3,
+        L_ce0: 0.032,
+        L_se0: 0.06,
+        L_mt_max: 0.106,
+        U_r: 0.6,
+        elements: coefficients::elements("human-vm4").expect("a published set"),
+        fibers: vec![
+            preset("human-vm4/super-slow", 0.2),
+            preset("human-vm4/slow", 0.45),
+            preset("human-vm4/fast", 0.35),
+        ],
+    }
+}
+
+/// A feline muscle of one fast type.
+fn feline_muscle() -> Muscle {
+    Muscle {
+        mass: 10e-3,
+        L_ce0: 0.025,
+        L_se0: 0.05,
+        L_mt_max: 0.086,
+        U_r: 0.8,
+        elements: coefficients::elements("feline-vm4").expect("a published set"),
+        fibers: vec![preset("feline-vm4/fast", 1.0)],
+    }
+}
+
+fn preset(name: &str, fraction: f64) -> Fiber {
+    let row = coefficients::fiber_row(name).expect("a published preset");
+    Fiber { fraction, fiber_type: coefficients::fiber_type(&row).expect("a full row") }
+}
+
+/// The vectors in `host-sim/data/vectors` of the modes that are built.
+const VECTORS: &[(&str, Mode, &str)] = &[
+    (
+        "continuous_activation_3hz",
+        Mode::Continuous,
+        include_str!("../data/vectors/continuous_activation_3hz.csv"),
+    ),
+    (
+        "continuous_length_3hz",
+        Mode::Continuous,
+        include_str!("../data/vectors/continuous_length_3hz.csv"),
+    ),
+    ("continuous_steps", Mode::Continuous, include_str!("../data/vectors/continuous_steps.csv")),
+    (
+        "passive_length_3hz",
+        Mode::Continuous,
+        include_str!("../data/vectors/passive_length_3hz.csv"),
+    ),
+    ("fes_ramp_20hz", Mode::Fes, include_str!("../data/vectors/fes_ramp_20hz.csv")),
+    ("fes_steps", Mode::Fes, include_str!("../data/vectors/fes_steps.csv")),
+];
+
+/// Path length of the paper's figures, m.
+const PATH: f64 = 0.16;
+/// Frequencies of the sinusoids, Hz.
+const FREQUENCIES: [u32; 4] = [1, 3, 5, 10];
+
+/// Every scenario, at 1 ms and at 0.5 ms.
+pub fn all() -> Vec<Scenario> {
+    let mut scenarios: Vec<Scenario> = VECTORS.iter().map(vector).collect();
+    for mode in [Mode::Continuous, Mode::Fes] {
+        for hz in FREQUENCIES {
+            scenarios.push(generated(
+                &format!("activation_{hz}hz"),
+                paper_muscle(),
+                mode,
+                2.0,
+                |t| [0.5 - 0.5 * (TAU * f64::from(hz) * t).cos(), PATH, 30.0],
+            ));
+            // Up to 3.4 L_ce0/s, from a standstill.
+            let amplitude = 0.02_f64.min(0.06 / f64::from(hz));
+            scenarios.push(generated(&format!("length_{hz}hz"), paper_muscle(), mode, 2.0, |t| {
+                let swing = (TAU * f64::from(hz) * t).sin() * smooth(t / 0.3);
+                [0.6, PATH + amplitude * swing, 20.0]
+            }));
+        }
+        scenarios.push(generated("fast_stretch", paper_muscle(), mode, 1.5, |t| {
+            // 14 to 18 cm and back, at up to 5 L_ce0/s.
+            let stretch = smooth((t - 0.5) / 0.1091) - smooth((t - 1.0) / 0.1091);
+            [0.7, 0.14 + 0.04 * stretch, 25.0]
+        }));
+        scenarios.push(generated("frequency_sweep", paper_muscle(), mode, 2.0, |t| {
+            [0.2 + 0.7 * smooth((t - 0.2) / 0.4), PATH, 2.0 + 40.0 * smooth((t - 0.3) / 1.5)]
+        }));
+        scenarios.push(generated("on_off_hand", hand_muscle(), mode, 2.5, |t| {
+            let activation = [0.0, 0.3, 1.0, 0.05, 0.7, 0.0][((t / 0.4) as usize).min(5)];
+            [activation, 0.092 + 0.006 * (TAU * 2.0 * t).sin() * smooth(t / 0.5), 35.0]
+        }));
+        scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
+            let step = (TAU * 2.0 * t).sin().max(0.0);
+            [0.9 * step, 0.074 + 0.008 * (TAU * 2.0 * t).cos() * smooth(t / 0.4), 40.0]
+        }));
+    }
+    let fine: Vec<Scenario> = scenarios.iter().map(refined).collect();
+    scenarios.extend(fine);
+    scenarios
+}
+
+/// From 0 to 1 with no jump in speed or acceleration while `x` goes from 0 to 1.
+fn smooth(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * x * (10.0 + x * (6.0 * x - 15.0))
+}
+
+fn vector(&(name, mode, text): &(&str, Mode, &str)) -> Scenario {
+    let path = Path::new(name);
+    let trace = trace::parse_inputs(text.as_bytes(), path).expect("a built-in vector");
+    let mut columns = trace::INPUT_COLUMNS.to_vec();
+    columns.push("force_n");
+    let rows = trace::numbers(text.as_bytes(), path, &columns).expect("a built-in vector");
+    Scenario {
+        name: name.to_owned(),
+        muscle: paper_muscle(),
+        mode,
+        trace,
+        vector: Some(rows.iter().map(|(_, row)| row[4]).collect()),
+    }
+}
+
+/// Inputs given as activation, path length (m) and stimulation frequency (pps) over time.
+fn generated(
+    name: &str,
+    muscle: Muscle,
+    mode: Mode,
+    duration: f64,
+    at: impl Fn(f64) -> [f64; 3],
+) -> Scenario {
+    let time_step = 1e-3;
+    let ticks = (duration / time_step).round() as usize;
+    let inputs = (0..=ticks)
+        .map(|tick| {
+            let [activation, path_length, stimulation_frequency] = at(tick as f64 * time_step);
+            Input { activation, path_length, stimulation_frequency }
+        })
+        .collect();
+    let trace = InputTrace { start: 0.0, time_step, inputs };
+    Scenario { name: name.to_owned(), muscle, mode, trace, vector: None }
+}
+
+/// The same inputs at 0.5 ms.
+fn refined(scenario: &Scenario) -> Scenario {
+    Scenario {
+        name: format!("{}@0.5ms", scenario.name),
+        trace: scenario.trace.refined(2),
+        vector: None,
+        ..scenario.clone()
+    }
+}

@@ -1,0 +1,241 @@
+//! Traces in CSV: the inputs of a run, and what came of it.
+
+use crate::reference::{Input, Sample};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Columns that an input file begins with.
+pub const INPUT_COLUMNS: [&str; 4] = ["t_s", "activation", "path_length_m", "stim_hz"];
+/// Columns of an output file.
+pub const OUTPUT_COLUMNS: [&str; 5] =
+    ["t_s", "force_n", "fascicle_length_l0", "fascicle_velocity_l0_per_s", "status"];
+
+/// Why a trace was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum TraceError {
+    /// The file could not be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Something in the file is wrong.
+    #[error("{}, line {line}, column {column}: {problem}", path.display())]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Inputs at a uniform time step; the first row is the muscle at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputTrace {
+    /// Time of the first row, s.
+    pub start: f64,
+    /// Time between rows, s.
+    pub time_step: f64,
+    /// One input per row.
+    pub inputs: Vec<Input>,
+}
+
+impl InputTrace {
+    /// Time of a row, s.
+    pub fn time(&self, row: usize) -> f64 {
+        self.start + self.time_step * row as f64
+    }
+
+    /// The same inputs at a time step `factor` times finer: held, and for the path interpolated.
+    #[must_use]
+    pub fn refined(&self, factor: usize) -> Self {
+        let mut inputs = vec![self.inputs[0]];
+        for pair in self.inputs.windows(2) {
+            for part in 1..=factor {
+                let share = part as f64 / factor as f64;
+                let path = pair[0].path_length * (1.0 - share) + pair[1].path_length * share;
+                inputs.push(Input { path_length: path, ..pair[1] });
+            }
+        }
+        Self { time_step: self.time_step / factor as f64, inputs, ..*self }
+    }
+}
+
+/// How far a row's time may be from a uniform one, in time steps.
+const TIME_TOLERANCE: f64 = 1e-3;
+
+/// Reads a file of inputs.
+pub fn read_inputs(path: &Path) -> Result<InputTrace, TraceError> {
+    let text = std::fs::read(path).map_err(|source| file_error(path, source))?;
+    parse_inputs(&text, path)
+}
+
+/// Parses inputs; `path` is for the messages.
+pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> {
+    let rows = numbers(text, path, &INPUT_COLUMNS)?;
+    let wrong = |index: usize, column: &str, problem: String| {
+        cell_error(path, rows[index].0, column, problem)
+    };
+    let [(_, first), .., (_, last)] = rows.as_slice() else {
+        let line = rows.last().map_or(1, |(line, _)| *line) + 1;
+        let problem =
+            format!("{} rows: a trace needs at least 2, to show its time step", rows.len());
+        return Err(cell_error(path, line, "t_s", problem));
+    };
+    let time_step = (last[0] - first[0]) / (rows.len() - 1) as f64;
+    for (index, (_, row)) in rows.iter().enumerate() {
+        if index > 0 && row[0] <= rows[index - 1].1[0] {
+            let problem =
+                format!("{} does not come after {}, the time before", row[0], rows[index - 1].1[0]);
+            return Err(wrong(index, "t_s", problem));
+        }
+    }
+    for (index, (_, row)) in rows.iter().enumerate() {
+        let expected = first[0] + time_step * index as f64;
+        if (row[0] - expected).abs() > TIME_TOLERANCE * time_step {
+            let problem = format!(
+                "{} is not {expected:.9}, as at a uniform step of {time_step:.9} s",
+                row[0]
+            );
+            return Err(wrong(index, "t_s", problem));
+        }
+    }
+    // A step that is a round number of nanoseconds is meant to be just that.
+    let nanoseconds = time_step * 1e9;
+    let time_step = if (nanoseconds - nanoseconds.round()).abs() < 1e-3 {
+        nanoseconds.round() * 1e-9
+    } else {
+        time_step
+    };
+    vm_nostd::TimeStep::from_seconds(time_step)
+        .map_err(|error| wrong(1, "t_s", error.to_string()))?;
+    let inputs = rows
+        .iter()
+        .map(|(_, row)| Input {
+            activation: row[1],
+            path_length: row[2],
+            stimulation_frequency: row[3],
+        })
+        .collect();
+    Ok(InputTrace { start: first[0], time_step, inputs })
+}
+
+/// Reads the numbers under the leading `columns` of a file, each row with its line.
+pub fn numbers(
+    text: &[u8],
+    path: &Path,
+    columns: &[&str],
+) -> Result<Vec<(u64, Vec<f64>)>, TraceError> {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
+    let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
+    for (index, &column) in columns.iter().enumerate() {
+        let found = header.get(index).unwrap_or("");
+        if found.trim() != column {
+            let problem = format!(
+                "found \"{found}\" in the header, which must begin with {}",
+                columns.join(",")
+            );
+            return Err(cell_error(path, 1, column, problem));
+        }
+    }
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| csv_error(path, &error))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() != header.len() {
+            let problem = format!("{} cells, the header has {}", record.len(), header.len());
+            let column = header.get(record.len()).unwrap_or("(beyond the last)");
+            return Err(cell_error(path, line, column, problem));
+        }
+        let mut row = Vec::with_capacity(columns.len());
+        for (cell, column) in record.iter().zip(columns) {
+            match cell.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => row.push(number),
+                _ => {
+                    let problem = format!("\"{cell}\" is not a finite number");
+                    return Err(cell_error(path, line, column, problem));
+                }
+            }
+        }
+        rows.push((line, row));
+    }
+    Ok(rows)
+}
+
+/// One row of an output file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputRow {
+    /// s.
+    pub time: f64,
+    /// Force, length, velocity.
+    pub sample: Sample,
+    /// Names of the flags, joined by `|`; `ok` where there are none.
+    pub status: String,
+}
+
+/// Nine significant digits: enough to tell any two `f32` apart.
+fn digits(value: f64) -> String {
+    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
+}
+
+/// Writes an output file in one stroke: it is there whole, or as it was before.
+pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let record = |writer: &mut csv::Writer<Vec<u8>>, cells: &[String]| {
+        writer.write_record(cells).map_err(|error| csv_error(path, &error))
+    };
+    record(&mut writer, &OUTPUT_COLUMNS.map(str::to_owned))?;
+    for row in rows {
+        let sample = &row.sample;
+        let cells = [
+            digits(row.time),
+            digits(sample.force),
+            digits(sample.fascicle_length),
+            digits(sample.fascicle_velocity),
+            row.status.clone(),
+        ];
+        record(&mut writer, &cells)?;
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(|error| file_error(path, std::io::Error::other(error.to_string())))?;
+    write_atomically(path, &bytes)
+}
+
+/// Writes a file beside its place and moves it there.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
+    let error = |source| file_error(path, source);
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the umask takes from it what the user wants taken.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder).map_err(error)?;
+    file.write_all(bytes).map_err(error)?;
+    file.as_file().sync_all().map_err(error)?;
+    file.persist(path).map_err(|e| error(e.error))?;
+    Ok(())
+}
+
+/// What is wrong in a cell of a file.
+pub fn cell_error(path: &Path, line: u64, column: &str, problem: String) -> TraceError {
+    TraceError::Cell { path: path.to_owned(), line, column: column.to_owned(), problem }
+}
+
+fn file_error(path: &Path, source: std::io::Error) -> TraceError {
+    TraceError::File { path: path.to_owned(), source }
+}
+
+fn csv_error(path: &Path, error: &csv::Error) -> TraceError {
+    let line = error.position().map_or(1, csv::Position::line);
+    cell_error(path, line, "(any)", error.to_string())
+}

@@ -1,0 +1,185 @@
+//! The proof of accuracy: every scenario in every arithmetic against the reference, and the
+//! reference against the authors' vectors.
+
+use crate::engine::{self, Arithmetic, RunError};
+use crate::metrics::{ForceError, forces};
+use crate::scenario::{self, Scenario};
+use crate::tolerance::{self, Tolerance};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The authors' program starts from an estimate of the resting length; its traces count from
+/// here on, s.
+const VECTOR_SETTLED: f64 = 0.1;
+/// An entry may be this much looser than what is measured, and no more.
+const LOOSEST: f64 = 2.0;
+
+/// One row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Scenario, with its time step where that is not 1 ms.
+    pub scenario: String,
+    /// Recruitment mode.
+    pub mode: String,
+    /// What the muscle was computed in.
+    pub arithmetic: String,
+    /// What it was compared against: `reference` or `vector`.
+    pub against: String,
+    /// Largest absolute error of the tendon force, % of F0.
+    pub max_pct_f0: f64,
+    /// Root-mean-square error, % of F0.
+    pub rms_pct_f0: f64,
+    /// Mean error, % of F0.
+    pub bias_pct_f0: f64,
+    /// What the largest error may be, % of F0.
+    pub tolerance_pct_f0: f64,
+    /// Whether the row is as it should be.
+    pub pass: bool,
+    /// What is wrong with a row that is not.
+    #[serde(skip)]
+    pub problem: String,
+    /// Why the error is what it is.
+    #[serde(skip)]
+    pub reason: String,
+}
+
+/// What `verify` found.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// One row per comparison.
+    pub rows: Vec<Row>,
+    /// Entries of the table of tolerances that no row uses.
+    pub unused: Vec<String>,
+}
+
+impl Report {
+    /// Whether every row passed and every entry was used.
+    pub fn passed(&self) -> bool {
+        !self.rows.is_empty() && self.unused.is_empty() && self.rows.iter().all(|row| row.pass)
+    }
+}
+
+/// Runs every comparison.
+pub fn verify() -> Result<Report, RunError> {
+    let scenarios = scenario::all();
+    let table = tolerance::table();
+    let progress = ProgressBar::new(scenarios.len() as u64);
+    let rows: Vec<Vec<Row>> = scenarios
+        .par_iter()
+        .map(|scenario| {
+            let rows = compare(scenario, &table);
+            progress.inc(1);
+            rows
+        })
+        .collect::<Result<_, _>>()?;
+    progress.finish_and_clear();
+    let rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let unused = table
+        .keys()
+        .filter(|key| !rows.iter().any(|row| key_of(row) == **key))
+        .map(|key| key.join(","))
+        .collect();
+    Ok(Report { rows, unused })
+}
+
+fn key_of(row: &Row) -> tolerance::Key {
+    [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone)
+}
+
+/// All rows of one scenario.
+fn compare(
+    scenario: &Scenario,
+    table: &BTreeMap<tolerance::Key, Tolerance>,
+) -> Result<Vec<Row>, RunError> {
+    let run = |arithmetic| {
+        let rows = engine::run(&scenario.muscle, scenario.mode, arithmetic, &scenario.trace)?;
+        let flags = rows.iter().fold(vm_nostd::Status::empty(), |all, row| all | row.1);
+        Ok::<_, RunError>((forces(rows.iter().map(|row| &row.0)), flags))
+    };
+    let f0 = scenario.muscle.f0();
+    let (reference, _) = run(Arithmetic::Reference)?;
+    let judge = |arithmetic: Arithmetic, against: &str, error, flags: vm_nostd::Status| {
+        let key = [
+            scenario.name.clone(),
+            engine::mode_name(scenario.mode).to_owned(),
+            arithmetic.name().to_owned(),
+            against.to_owned(),
+        ];
+        judge(key, error, flags, table, f0)
+    };
+    let mut rows = Vec::new();
+    if let Some(vector) = &scenario.vector {
+        let settled =
+            (0..vector.len()).find(|&row| scenario.trace.time(row) > VECTOR_SETTLED).unwrap_or(0);
+        let error = ForceError::between(&reference[settled..], &vector[settled..], f0);
+        rows.push(judge(Arithmetic::Reference, "vector", error, vm_nostd::Status::empty()));
+    }
+    for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+        let (computed, flags) = run(arithmetic)?;
+        let error = ForceError::between(&computed, &reference, f0);
+        rows.push(judge(arithmetic, "reference", error, flags));
+    }
+    Ok(rows)
+}
+
+fn judge(
+    key: tolerance::Key,
+    error: ForceError,
+    flags: vm_nostd::Status,
+    table: &BTreeMap<tolerance::Key, Tolerance>,
+    f0: f64,
+) -> Row {
+    let entry = table.get(&key);
+    let (promised, promised_rms) = tolerance::promise(&key, f0);
+    let mut problems = Vec::new();
+    let limit = |found: f64, most: f64, what: &str, problems: &mut Vec<String>| {
+        // Written so that a not-a-number fails.
+        if !(found <= most) {
+            problems.push(format!("{what} {found:.5} > {most:.5}"));
+        }
+    };
+    limit(error.max, promised, "max", &mut problems);
+    if let Some(most) = promised_rms {
+        limit(error.rms, most, "rms", &mut problems);
+    }
+    match entry {
+        None => problems.push("no tolerance in data/tolerances.csv".to_owned()),
+        Some(entry) => {
+            limit(error.max, entry.max, "max", &mut problems);
+            limit(
+                entry.max,
+                LOOSEST * error.max,
+                "tolerance, against twice measured,",
+                &mut problems,
+            );
+            if let Some(rms) = entry.rms {
+                limit(error.rms, rms, "rms", &mut problems);
+                limit(
+                    rms,
+                    LOOSEST * error.rms,
+                    "rms tolerance, against twice measured,",
+                    &mut problems,
+                );
+            }
+        }
+    }
+    if !flags.is_empty() {
+        problems.push(format!("flagged {}", engine::status_names(flags)));
+    }
+    let [scenario, mode, arithmetic, against] = key;
+    Row {
+        scenario,
+        mode,
+        arithmetic,
+        against,
+        max_pct_f0: error.max,
+        rms_pct_f0: error.rms,
+        bias_pct_f0: error.bias,
+        tolerance_pct_f0: entry.map_or(0.0, |entry| entry.max),
+        pass: problems.is_empty(),
+        problem: problems.join("; "),
+        reason: entry.map_or(String::new(), |entry| entry.reason.clone()),
+    }
+}
