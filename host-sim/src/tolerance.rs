@@ -47,7 +47,11 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
     if arithmetic == "reference" {
         return (0.005 / f0 * 100.0, None);
     }
-    let share = if scenario.ends_with("@0.5ms") { 0.5 } else { 1.0 };
+    let share = match scenario.split_once('@') {
+        Some((_, "2ms")) => 4.0,
+        Some((_, "0.5ms" | "0.1ms")) => 0.5,
+        _ => 1.0,
+    };
     if scenario.starts_with("passive") {
         (1.5 * share, Some(0.1 * share))
     } else {

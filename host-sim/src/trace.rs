@@ -52,6 +52,13 @@ impl InputTrace {
         self.start + self.time_step * row as f64
     }
 
+    /// Every `stride`-th of the inputs.
+    #[must_use]
+    pub fn strided(&self, stride: usize) -> Self {
+        let inputs = self.inputs.iter().copied().step_by(stride).collect();
+        Self { time_step: self.time_step * stride as f64, inputs, ..*self }
+    }
+
     /// The same inputs at a time step `factor` times finer: held, and for the path interpolated.
     #[must_use]
     pub fn refined(&self, factor: usize) -> Self {

@@ -100,7 +100,7 @@ fn compare(
     };
     let f0 = scenario.muscle.f0();
     let (reference, _) = run(Arithmetic::Reference)?;
-    let judge = |arithmetic: Arithmetic, against: &str, error, flags: vm_nostd::Status| {
+    let judge = |arithmetic: Arithmetic, against: &str, error, flags| {
         let key = [
             scenario.name.clone(),
             engine::mode_name(scenario.mode).to_owned(),
@@ -114,12 +114,12 @@ fn compare(
         let settled =
             (0..vector.len()).find(|&row| scenario.trace.time(row) > VECTOR_SETTLED).unwrap_or(0);
         let error = ForceError::between(&reference[settled..], &vector[settled..], f0);
-        rows.push(judge(Arithmetic::Reference, "vector", error, vm_nostd::Status::empty()));
+        rows.push(judge(Arithmetic::Reference, "vector", error, Default::default()));
     }
     for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
         let (computed, flags) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
-        rows.push(judge(arithmetic, "reference", error, flags));
+        rows.push(judge(arithmetic, "reference", error, (flags, scenario.flags)));
     }
     Ok(rows)
 }
@@ -127,7 +127,7 @@ fn compare(
 fn judge(
     key: tolerance::Key,
     error: ForceError,
-    flags: vm_nostd::Status,
+    (flags, expected_flags): (vm_nostd::Status, vm_nostd::Status),
     table: &BTreeMap<tolerance::Key, Tolerance>,
     f0: f64,
 ) -> Row {
@@ -165,7 +165,7 @@ fn judge(
             }
         }
     }
-    if !flags.is_empty() {
+    if flags != expected_flags {
         problems.push(format!("flagged {}", engine::status_names(flags)));
     }
     let [scenario, mode, arithmetic, against] = key;

@@ -20,8 +20,9 @@ bitflags::bitflags! {
         const PATH_LENGTH_CLIPPED = 1 << 4;
         /// Path length was not a number (the one before was kept) or infinite (clipped).
         const PATH_LENGTH_NOT_FINITE = 1 << 5;
-        /// The fascicles left the range in which force-length, force-velocity and
-        /// activation-frequency relation hold; those were taken at its edge.
+        /// The fascicles left the range of lengths, or shortened faster than V_max of a type, so
+        /// that force-length, force-velocity or activation-frequency relation do not hold; they
+        /// were taken at the edge of their range.
         const FASCICLE_OUTSIDE_DOMAIN = 1 << 6;
         /// The fascicles were stopped at the least or greatest length the state can have.
         const FASCICLE_LENGTH_LIMITED = 1 << 7;
@@ -67,6 +68,8 @@ pub(crate) struct Domain<S> {
     pub(crate) path_length: Range<S>,
     /// Where the equations of the filaments hold, L_ce0.
     pub(crate) filaments: Range<S>,
+    /// The slowest V_max of the types, L_ce0/s: FV of all types holds above.
+    pub(crate) shortening_velocity: S,
     /// What the state can hold, L_ce0: from the shortest at which the equations hold to where
     /// the longest path would leave no tendon.
     pub(crate) fascicle_length: Range<S>,
@@ -83,6 +86,7 @@ impl<S: Scalar> Domain<S> {
             stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY)),
             path_length: Range::new(params.path_domain()),
             filaments: Range::new(filaments),
+            shortening_velocity: S::from_f64(params.shortening_velocity()),
             fascicle_length: Range::new((filaments.0, longest)),
             fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED)),
         }

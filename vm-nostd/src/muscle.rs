@@ -175,7 +175,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let travel = state.fascicle_velocity * self.time_step;
         let (middle, outside) = self.domain.filaments.clip(length + travel * self.half);
-        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside);
+        let too_fast = state.fascicle_velocity < self.domain.shortening_velocity;
+        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside || too_fast);
 
         let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
         let recruited = self.recruitment.advance(excitations, state, &input, middle);

@@ -138,6 +138,13 @@ impl<const N: usize> MuscleParams<N> {
         })
     }
 
+    /// The velocity of unloaded shortening of the slowest type, L_ce0/s, negative: faster than
+    /// this the force-velocity relation of that type is 0.
+    pub fn shortening_velocity(&self) -> f64 {
+        let velocities = self.fibers.iter().map(|f| f.fiber_type.force_velocity.maximum_velocity);
+        velocities.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Path lengths, in m, that are taken as they are; others are saturated and flagged.
     /// The shortest is where the tendon is slack with the fascicles at their shortest.
     pub fn path_domain(&self) -> (f64, f64) {
