@@ -74,7 +74,7 @@ impl InputTrace {
     }
 }
 
-/// How far a row's time may be from a uniform one, in time steps.
+/// How far a time step may be from the usual one, as a share of it.
 const TIME_TOLERANCE: f64 = 1e-3;
 
 /// Reads a file of inputs.
@@ -95,24 +95,25 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
             format!("{} rows: a trace needs at least 2, to show its time step", rows.len());
         return Err(cell_error(path, line, "t_s", problem));
     };
-    let time_step = (last[0] - first[0]) / (rows.len() - 1) as f64;
-    for (index, (_, row)) in rows.iter().enumerate() {
-        if index > 0 && row[0] <= rows[index - 1].1[0] {
-            let problem =
-                format!("{} does not come after {}, the time before", row[0], rows[index - 1].1[0]);
-            return Err(wrong(index, "t_s", problem));
+    for (index, pair) in rows.windows(2).enumerate() {
+        let (before, time) = (pair[0].1[0], pair[1].1[0]);
+        if time <= before {
+            let problem = format!("{time} does not come after {before}, the time before");
+            return Err(wrong(index + 1, "t_s", problem));
         }
     }
-    for (index, (_, row)) in rows.iter().enumerate() {
-        let expected = first[0] + time_step * index as f64;
-        if (row[0] - expected).abs() > TIME_TOLERANCE * time_step {
+    let usual = usual_step(&rows);
+    for (index, pair) in rows.windows(2).enumerate() {
+        let (before, time) = (pair[0].1[0], pair[1].1[0]);
+        if ((time - before) - usual).abs() > TIME_TOLERANCE * usual {
             let problem = format!(
-                "{} is not {expected:.9}, as at a uniform step of {time_step:.9} s",
-                row[0]
+                "{time} comes {:.9} s after {before}, other rows {usual:.9} s",
+                time - before
             );
-            return Err(wrong(index, "t_s", problem));
+            return Err(wrong(index + 1, "t_s", problem));
         }
     }
+    let time_step = (last[0] - first[0]) / (rows.len() - 1) as f64;
     // A step that is a round number of nanoseconds is meant to be just that.
     let nanoseconds = time_step * 1e9;
     let time_step = if (nanoseconds - nanoseconds.round()).abs() < 1e-3 {
@@ -131,6 +132,13 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
         })
         .collect();
     Ok(InputTrace { start: first[0], time_step, inputs })
+}
+
+/// The median of the time steps, s.
+fn usual_step(rows: &[(u64, Vec<f64>)]) -> f64 {
+    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].1[0] - pair[0].1[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps[(steps.len() - 1) / 2]
 }
 
 /// Reads the numbers under the leading `columns` of a file, each row with its line.

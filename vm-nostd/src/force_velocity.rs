@@ -53,7 +53,7 @@ impl ForceVelocityParams {
     pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
-        let turning_point = if a2 == 0.0 { least } else { (-0.5 * a1 / a2).clamp(least, most) };
+        let turning_point = if a2 == 0.0 { least } else { (-0.5 * a1 / a2).max(least).min(most) };
         for length in [least, most, turning_point] {
             within("force_velocity.shortening", c0 + c1 * length, POLE_MARGIN * 0.5 - 1.0, 300.0)?;
             let a = a0 + a1 * length + a2 * length * length;

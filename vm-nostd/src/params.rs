@@ -114,6 +114,12 @@ const FRACTION_SUM_TOLERANCE: f64 = 1e-6;
 const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
 /// Fascicle lengths outside of which no type is evaluated, L_ce0.
 const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
+/// Fields that are refused for what follows from them.
+const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
+const LONGEST_LENGTH: &str = "activation.length_dependence: longest length (L_ce0) with n_f >= 0.2";
+/// A type must be usable at least between these fascicle lengths, L_ce0.
+const LONGEST_LOWER_EDGE: f64 = 0.9;
+const SHORTEST_UPPER_EDGE: f64 = 1.1;
 
 impl<const N: usize> MuscleParams<N> {
     /// Maximal isometric force F0, N: specific tension times cross-sectional area.
@@ -169,21 +175,25 @@ impl<const N: usize> MuscleParams<N> {
         let (least, most) = MAXIMUM_FASCICLE_LENGTH;
         within("max_path_length", self.max_path_length, path_at(least), path_at(most))?;
 
+        self.each_fiber(|t| {
+            let (least, most) = FASCICLE_DOMAIN;
+            let shortest = t.force_velocity.shortest_length(least);
+            within(SHORTEST_LENGTH, shortest, least, LONGEST_LOWER_EDGE)?;
+            let longest = t.activation.longest_length(most);
+            within(LONGEST_LENGTH, longest, SHORTEST_UPPER_EDGE, most)
+        })?;
         let (shortest, longest) = self.fascicle_domain();
+        self.each_fiber(|t| t.force_velocity.validate_monotone(shortest, longest))
+    }
+
+    /// Checks every type; the error says which.
+    fn each_fiber(
+        &self,
+        check: impl Fn(&FiberType) -> Result<(), ParameterError>,
+    ) -> Result<(), ParameterError> {
         for (index, fiber) in self.fibers.iter().enumerate() {
-            let t = &fiber.fiber_type;
-            let own = within(
-                "force_velocity.shortening",
-                t.force_velocity.shortest_length(FASCICLE_DOMAIN.0),
-                FASCICLE_DOMAIN.0,
-                0.9,
-            )
-            .and_then(|()| t.force_velocity.validate_monotone(shortest, longest))
-            .and_then(|()| {
-                let most = t.activation.longest_length(FASCICLE_DOMAIN.1);
-                within("activation.length_dependence", most, 1.1, FASCICLE_DOMAIN.1)
-            });
-            own.map_err(|error| ParameterError { fiber: Some(index), ..error })?;
+            check(&fiber.fiber_type)
+                .map_err(|error| ParameterError { fiber: Some(index), ..error })?;
         }
         Ok(())
     }
