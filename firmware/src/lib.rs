@@ -1,1 +1,11 @@
-//! x
+//! The stimulator controller's logic, free of any chip: testable on a host.
+//!
+//! [`Rig::tick`] is what the 1 kHz interrupt runs; where its inputs come from and where its
+//! results go are the [`Inputs`] and [`Record`] it is given.
+#![no_std]
+
+mod rig;
+mod scenario;
+
+pub use rig::{FRAME_WORDS, Frame, Inputs, Record, Rig};
+pub use scenario::{Scenario, TICKS};

@@ -1,9 +1,11 @@
 //! The command line `vm`.
 
 use crate::engine::{self, Arithmetic};
+use crate::golden;
 use crate::link;
 use crate::muscle_file;
 use crate::plot::{self, Series};
+use crate::readme;
 use crate::reference::Mode;
 use crate::trace::{self, InputTrace, OutputRow};
 use crate::verify::{self, Report};
@@ -30,6 +32,10 @@ enum Command {
     Verify(VerifyArgs),
     /// Draw a run as SVG.
     Plot(PlotArgs),
+    /// Compare the bits of every scenario's state with the golden ones.
+    Golden(GoldenArgs),
+    /// Compare the README's measured table with what is measured.
+    Readme(ReadmeArgs),
 }
 
 #[derive(Debug, Args)]
@@ -71,6 +77,23 @@ struct PlotArgs {
     output: PathBuf,
 }
 
+#[derive(Debug, Args)]
+struct GoldenArgs {
+    /// Take the bits of what is built as golden.
+    #[arg(long, requires = "reason")]
+    bless: bool,
+    /// Why the bits had to change.
+    #[arg(long, requires = "bless")]
+    reason: Option<String>,
+}
+
+#[derive(Debug, Args)]
+struct ReadmeArgs {
+    /// Write what is measured.
+    #[arg(long)]
+    write: bool,
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ModeName {
     /// Natural continuous recruitment.
@@ -99,6 +122,8 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run(&args).map(|()| true),
         Command::Verify(args) => verify_all(&args),
         Command::Plot(args) => draw(&args).map(|()| true),
+        Command::Golden(args) => compare_bits(&args),
+        Command::Readme(args) => compare_readme(&args),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,
@@ -213,6 +238,34 @@ fn draw(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
     let svg = plot::draw(&title.display().to_string(), &series)?;
     trace::write_atomically(&args.output, svg.as_bytes())?;
     Ok(())
+}
+
+fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
+    if let Some(reason) = &args.reason {
+        golden::bless(reason)?;
+        return Ok(true);
+    }
+    let differences = golden::differences()?;
+    for difference in &differences {
+        eprintln!("vm: {difference}");
+    }
+    if differences.is_empty() {
+        println!("all bits are the golden ones");
+    }
+    Ok(differences.is_empty())
+}
+
+fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
+    let report = verify::verify()?;
+    if args.write {
+        readme::write(&report)?;
+        return Ok(true);
+    }
+    let current = readme::is_current(&report)?;
+    if !current {
+        eprintln!("vm: the README's table is not what is measured: cargo vm readme --write");
+    }
+    Ok(current)
 }
 
 fn input_series(trace: &InputTrace) -> [Series; 3] {

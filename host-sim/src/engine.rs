@@ -44,6 +44,9 @@ pub enum RunError {
     /// The reference integrator gave up.
     #[error(transparent)]
     Solver(#[from] SolverError),
+    /// The reference has no bits to keep.
+    #[error("the reference has no bits to compare")]
+    NoBits,
     /// A muscle of so many types is not built here.
     #[error("{0} fibre types: a muscle has 1 to {most} here", most = link::MOST_TYPES)]
     TypeCount(usize),
@@ -61,8 +64,8 @@ pub fn run(
 ) -> Result<Vec<Row>, RunError> {
     match arithmetic {
         Arithmetic::Reference => run_reference(muscle, mode, trace),
-        Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace),
-        Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace),
+        Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut |_| {}),
+        Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut |_| {}),
     }
 }
 
@@ -79,16 +82,38 @@ fn run_reference(muscle: &Muscle, mode: Mode, trace: &InputTrace) -> Result<Vec<
     Ok(rows)
 }
 
+/// What is done with the bits of the state after every tick.
+type Watch<'a> = &'a mut dyn FnMut(u64);
+
+/// A checksum (CRC-64/XZ) of the bits of the state after every tick.
+pub fn fingerprint(
+    muscle: &Muscle,
+    mode: Mode,
+    arithmetic: Arithmetic,
+    trace: &InputTrace,
+) -> Result<u64, RunError> {
+    let crc = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
+    let mut digest = crc.digest();
+    let mut watch = |word: u64| digest.update(&word.to_le_bytes());
+    match arithmetic {
+        Arithmetic::Reference => return Err(RunError::NoBits),
+        Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut watch)?,
+        Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut watch)?,
+    };
+    Ok(digest.finalize())
+}
+
 fn run_vm<S: vm::Scalar>(
     muscle: &Muscle,
     mode: Mode,
     trace: &InputTrace,
+    watch: Watch<'_>,
 ) -> Result<Vec<Row>, RunError> {
     with_type_count!(
         muscle,
         N => match mode {
-            Mode::Continuous => run_mode::<S, vm::NaturalContinuous, N>(muscle, trace),
-            Mode::Fes => run_mode::<S, vm::IntramuscularFes, N>(muscle, trace),
+            Mode::Continuous => run_mode::<S, vm::NaturalContinuous, N>(muscle, trace, watch),
+            Mode::Fes => run_mode::<S, vm::IntramuscularFes, N>(muscle, trace, watch),
         },
         else Err(RunError::TypeCount(muscle.fibers.len()))
     )
@@ -97,13 +122,17 @@ fn run_vm<S: vm::Scalar>(
 fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
     muscle: &Muscle,
     trace: &InputTrace,
+    watch: Watch<'_>,
 ) -> Result<Vec<Row>, RunError> {
     let step = vm::TimeStep::from_seconds(trace.time_step)?;
     let muscle = vm::Muscle::<S, R, N>::build(&link::params(muscle), step)?;
     let mut state = muscle.rest(S::from_f64(trace.inputs[0].path_length))?;
-    let at_rest = muscle.observe(&state);
-    let ticks = trace.inputs[1..].iter().map(|input| muscle.step(&mut state, scaled(input)));
-    Ok(std::iter::once(at_rest).chain(ticks).map(row).collect())
+    let mut rows = vec![row(muscle.observe(&state))];
+    for input in &trace.inputs[1..] {
+        rows.push(row(muscle.step(&mut state, scaled(input))));
+        state.words().for_each(|word| watch(word.into()));
+    }
+    Ok(rows)
 }
 
 fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {

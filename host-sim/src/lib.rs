@@ -3,10 +3,12 @@
 pub mod coefficients;
 pub mod command_line;
 pub mod engine;
+pub mod golden;
 pub mod link;
 pub mod metrics;
 pub mod muscle_file;
 pub mod plot;
+pub mod readme;
 pub mod reference;
 pub mod scenario;
 pub mod tolerance;

@@ -182,10 +182,14 @@ fn in_file_unit(value: f64, scale: f64) -> f64 {
 }
 
 fn refusal(error: vm::ParameterError) -> Refusal {
+    // What follows from a field is named behind a colon.
+    let (field, derived) =
+        error.field.split_once(": ").map_or((error.field, None), |(f, d)| (f, Some(d)));
     let (key, scale) = KEYS
         .iter()
-        .find(|(field, ..)| *field == error.field)
-        .map_or((error.field, 1.0), |&(_, key, scale)| (key, scale));
+        .find(|(name, ..)| *name == field)
+        .map_or((field, 1.0), |&(_, key, scale)| (key, scale));
+    let key = derived.map_or(key.to_owned(), |derived| format!("{key}: {derived}"));
     let limit = match error.limit {
         vm::Limit::Within { least, most } => {
             vm::Limit::Within { least: in_file_unit(least, scale), most: in_file_unit(most, scale) }
@@ -194,7 +198,7 @@ fn refusal(error: vm::ParameterError) -> Refusal {
     };
     Refusal {
         fiber: error.fiber,
-        key: key.to_owned(),
+        key,
         value: in_file_unit(error.value, scale).to_string(),
         limit: limit.to_string(),
     }

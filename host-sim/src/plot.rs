@@ -53,6 +53,8 @@ fn panel(
         .configure_mesh()
         .x_desc("time (s)")
         .y_desc(series.label)
+        .axis_desc_style(("sans-serif", 14))
+        .label_style(("sans-serif", 13))
         .x_labels(10)
         .y_labels(5)
         .light_line_style(WHITE)

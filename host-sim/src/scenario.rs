@@ -111,12 +111,12 @@ pub fn all() -> Vec<Scenario> {
                 paper_muscle(),
                 mode,
                 2.0,
-                |t| [0.5 - 0.5 * (TAU * f64::from(hz) * t).cos(), PATH, 30.0],
+                |t| [0.5 - 0.5 * libm::cos(TAU * f64::from(hz) * t), PATH, 30.0],
             ));
             // Up to 3.4 L_ce0/s, from a standstill.
             let amplitude = 0.02_f64.min(0.06 / f64::from(hz));
             scenarios.push(generated(&format!("length_{hz}hz"), paper_muscle(), mode, 2.0, |t| {
-                let swing = (TAU * f64::from(hz) * t).sin() * smooth(t / 0.3);
+                let swing = libm::sin(TAU * f64::from(hz) * t) * smooth(t / 0.3);
                 [0.6, PATH + amplitude * swing, 20.0]
             }));
         }
@@ -130,7 +130,7 @@ pub fn all() -> Vec<Scenario> {
         }));
         let on_off = generated("on_off_hand", hand_muscle(), mode, 2.5, |t| {
             let activation = [0.0, 0.2, 0.6, 0.1, 0.4, 0.0][((t / 0.4) as usize).min(5)];
-            [activation, 0.1 + 0.004 * (TAU * 2.0 * t).sin() * smooth(t / 0.5), 35.0]
+            [activation, 0.1 + 0.004 * libm::sin(TAU * 2.0 * t) * smooth(t / 0.5), 35.0]
         });
         // FES starts its super-slow fibres, too, into a tendon that is hardly taut: for a moment
         // the muscle shortens faster than they can.
@@ -140,8 +140,8 @@ pub fn all() -> Vec<Scenario> {
         };
         scenarios.push(Scenario { flags, ..on_off });
         scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
-            let step = (TAU * 2.0 * t).sin().max(0.0);
-            [0.9 * step, 0.074 + 0.008 * (TAU * 2.0 * t).cos() * smooth(t / 0.4), 40.0]
+            let step = libm::sin(TAU * 2.0 * t).max(0.0);
+            [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
         }));
     }
     let vectors = &scenarios[..VECTORS.len()];

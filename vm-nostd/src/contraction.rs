@@ -98,8 +98,8 @@ impl<S: Scalar> Substep<S> {
 impl<S: Scalar> Contraction<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let rest = step.seconds() - FIRST_SUBSTEP;
-        // A shortest tick is all first substep; the tolerance is for its rounding.
-        let others = libm::ceil(rest / LONGEST_SUBSTEP - 1e-9);
+        // Rounded up, but for the rounding of the quotient itself.
+        let others = (rest / LONGEST_SUBSTEP - 1e-9) as u8 + 1;
         let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
         let tendon =
             Tendon::new(&params.elements.tendon, params.fascicle_length, params.tendon_length);
@@ -107,8 +107,8 @@ impl<S: Scalar> Contraction<S> {
             tendon,
             viscosity: S::from_f64(params.elements.parallel.viscosity),
             first: Substep::new(FIRST_SUBSTEP, step, mass),
-            other: Substep::new(rest / others.max(1.0), step, mass),
-            others: others as u8,
+            other: Substep::new(rest / f64::from(others), step, mass),
+            others,
             half: S::from_f64(0.5),
             speed: S::from_f64(MAXIMUM_SPEED),
         }

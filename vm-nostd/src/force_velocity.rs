@@ -28,6 +28,10 @@ pub struct ForceVelocityParams {
 /// How far cV0 + cV1 L must stay above -1, where FV gets a pole inside |Vmax|.
 const POLE_MARGIN: f64 = 0.02;
 
+/// What follows from the coefficients and is refused by its own name.
+const SHORTENING: &str = "force_velocity.shortening: cV0 + cV1 L";
+const LENGTHENING: &str = "force_velocity.lengthening: aV0 + aV1 L + aV2 L²";
+
 impl ForceVelocityParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         let v_max = self.maximum_velocity;
@@ -55,9 +59,10 @@ impl ForceVelocityParams {
         let [a0, a1, a2] = self.lengthening;
         let turning_point = if a2 == 0.0 { least } else { (-0.5 * a1 / a2).max(least).min(most) };
         for length in [least, most, turning_point] {
-            within("force_velocity.shortening", c0 + c1 * length, POLE_MARGIN * 0.5 - 1.0, 300.0)?;
-            let a = a0 + a1 * length + a2 * length * length;
-            within("force_velocity.lengthening", a, -300.0, -1.0)?;
+            let shortening = c0 + c1 * length;
+            within(SHORTENING, shortening, POLE_MARGIN * 0.5 - 1.0, 300.0)?;
+            let lengthening = a0 + a1 * length + a2 * length * length;
+            within(LENGTHENING, lengthening, -300.0, -1.0)?;
         }
         Ok(())
     }

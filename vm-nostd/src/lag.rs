@@ -14,7 +14,8 @@ impl<S: Scalar> Lag<S> {
     /// A lag of `time_constant` s.
     pub(crate) fn new(time_constant: f64, step: TimeStep) -> Self {
         let x = step.seconds() / time_constant;
-        Self { half: S::from_f64(-libm::expm1(-0.5 * x)), whole: S::from_f64(-libm::expm1(-x)) }
+        let done = |x: f64| S::from_f64(1.0 - Scalar::exp(-x));
+        Self { half: done(0.5 * x), whole: done(x) }
     }
 
     /// The value at the middle of the tick.

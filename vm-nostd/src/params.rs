@@ -218,7 +218,7 @@ impl<const N: usize> MuscleParams<N> {
             let limit = Limit::AtLeastOneType;
             return Err(ParameterError { field: "fibers", fiber: None, value: 0.0, limit });
         }
-        if libm::fabs(sum - 1.0) > FRACTION_SUM_TOLERANCE {
+        if (sum - 1.0).abs() > FRACTION_SUM_TOLERANCE {
             let limit = Limit::SumIsOne { within: FRACTION_SUM_TOLERANCE };
             return Err(ParameterError { field: "fraction", fiber: None, value: sum, limit });
         }

@@ -28,7 +28,7 @@ pub trait Scalar:
     + 'static
 {
     /// The word a value is saved in.
-    type Bits: Copy + Debug + Eq;
+    type Bits: Copy + Debug + Eq + Into<u64>;
 
     /// 0.
     const ZERO: Self;

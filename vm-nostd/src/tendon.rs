@@ -27,7 +27,8 @@ impl TendonParams {
 
     /// The tendon length, in L_se0, that carries `force` (F0, more than 0).
     pub(crate) fn length_at(&self, force: f64) -> f64 {
-        self.toe * libm::log(libm::expm1(force / (self.stiffness * self.toe))) + self.slack_length
+        let growth = Scalar::exp(force / (self.stiffness * self.toe));
+        self.toe * Scalar::ln(growth - 1.0) + self.slack_length
     }
 }
 

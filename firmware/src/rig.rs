@@ -1,0 +1,105 @@
+//! Two muscles and the tick that steps them.
+
+use vm_nostd::{
+    ContinuousMuscle, FesMuscle, FiberParams, Input, MuscleParams, Output, ParameterError, State,
+    TimeStep, paper_table_1,
+};
+
+/// Fibre types of each muscle.
+const TYPES: usize = 2;
+/// Words that a muscle's state is saved in.
+const STATE_WORDS: usize = State::<f32, TYPES>::WORDS;
+/// Words of a muscle's output: force, length, velocity, status.
+const OUTPUT_WORDS: usize = 4;
+/// Words of a [`Frame`].
+pub const FRAME_WORDS: usize = 2 * (STATE_WORDS + OUTPUT_WORDS);
+
+/// All bits that a tick leaves: state and output of the continuous muscle, then of the FES one.
+pub type Frame = [u32; FRAME_WORDS];
+
+/// Where a tick's inputs come from.
+pub trait Inputs {
+    /// Inputs of the continuous and of the FES muscle for a tick, counted from 0.
+    fn inputs(&mut self, tick: u32) -> [Input<f32>; 2];
+}
+
+/// Where a tick's results go.
+pub trait Record {
+    /// Takes the frame of a tick; must not block.
+    fn record(&mut self, frame: &Frame);
+}
+
+/// Two muscles of the paper's kind, one recruited naturally and one by intramuscular FES.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    continuous: ContinuousMuscle<f32, TYPES>,
+    continuous_state: State<f32, TYPES>,
+    fes: FesMuscle<f32, TYPES>,
+    fes_state: State<f32, TYPES>,
+    tick: u32,
+}
+
+/// The paper's validation muscle, "deltoid posterior".
+const MUSCLE: MuscleParams<TYPES> = MuscleParams {
+    mass: 97.5e-3,
+    fascicle_length: 0.11,
+    tendon_length: 0.02,
+    max_path_length: 0.184,
+    recruitment_saturation: 0.8,
+    elements: paper_table_1::ELEMENTS,
+    fibers: [
+        FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
+        FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
+    ],
+};
+
+impl Rig {
+    /// Both muscles at rest on a path of `path_length` m, to be ticked at 1 kHz.
+    pub fn at_rest(path_length: f32) -> Result<Self, ParameterError> {
+        let continuous = ContinuousMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
+        let fes = FesMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
+        Ok(Self {
+            continuous_state: continuous.rest(path_length)?,
+            continuous,
+            fes_state: fes.rest(path_length)?,
+            fes,
+            tick: 0,
+        })
+    }
+
+    /// Ticks done so far.
+    pub fn ticks(&self) -> u32 {
+        self.tick
+    }
+
+    /// One tick: reads inputs, steps both muscles, records what they were left in.
+    ///
+    /// Bounded and free of waiting; to be called every millisecond.
+    pub fn tick(&mut self, inputs: &mut impl Inputs, record: &mut impl Record) {
+        let [continuous, fes] = inputs.inputs(self.tick);
+        let continuous = self.continuous.step(&mut self.continuous_state, continuous);
+        let fes = self.fes.step(&mut self.fes_state, fes);
+        self.tick = self.tick.wrapping_add(1);
+
+        let words = self
+            .continuous_state
+            .words()
+            .chain(output_words(&continuous))
+            .chain(self.fes_state.words())
+            .chain(output_words(&fes));
+        let mut frame = [0; FRAME_WORDS];
+        for (place, word) in frame.iter_mut().zip(words) {
+            *place = word;
+        }
+        record.record(&frame);
+    }
+}
+
+fn output_words(output: &Output<f32>) -> [u32; OUTPUT_WORDS] {
+    [
+        output.force.to_bits(),
+        output.fascicle_length.to_bits(),
+        output.fascicle_velocity.to_bits(),
+        u32::from(output.status.bits()),
+    ]
+}

@@ -1,0 +1,55 @@
+//! Every comparison of `vm verify` passes, and every one that could fail does when it should.
+
+use host_sim::metrics::ForceError;
+use host_sim::tolerance;
+use host_sim::{golden, readme, verify};
+
+#[test]
+fn every_row_is_within_its_tolerance_and_the_readme_says_so() {
+    let report = verify::verify().expect("all scenarios run");
+    let failed: Vec<String> = report
+        .rows
+        .iter()
+        .filter(|row| !row.pass)
+        .map(|row| format!("{} {} {}: {}", row.scenario, row.mode, row.arithmetic, row.problem))
+        .collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    assert!(report.unused.is_empty(), "tolerances of no row: {:#?}", report.unused);
+    assert!(report.passed());
+    assert!(
+        readme::is_current(&report).expect("a README with a place for the table"),
+        "the README's table has drifted: cargo vm readme --write"
+    );
+}
+
+#[test]
+fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
+    let f0 = host_sim::scenario::paper_muscle().f0();
+    for (key, entry) in tolerance::table() {
+        let (promised, promised_rms) = tolerance::promise(&key, f0);
+        assert!(entry.max <= promised, "{key:?}: {} > {promised}", entry.max);
+        if let Some(promised) = promised_rms {
+            let rms = entry.rms.expect("an rms tolerance where one is promised");
+            assert!(rms <= promised, "{key:?}: {rms} > {promised}");
+        }
+        assert!(entry.reason.split_whitespace().count() >= 4, "{key:?}: no reason");
+    }
+}
+
+#[test]
+fn an_error_of_force_is_seen() {
+    let error = ForceError::between(&[1.0, 2.0, 3.0], &[1.0, 2.5, 3.0], 100.0);
+    assert_eq!(error.max, 0.5);
+    assert!((error.bias + 0.5 / 3.0).abs() < 1e-12);
+    assert!((error.rms - (0.25_f64 / 3.0).sqrt()).abs() < 1e-12);
+    assert!(ForceError::between(&[1.0, f64::NAN, 1.0], &[1.0; 3], 1.0).max.is_nan());
+}
+
+#[test]
+fn all_bits_are_the_golden_ones() {
+    let differences = golden::differences().expect("golden bits to compare with");
+    assert!(
+        differences.is_empty(),
+        "{differences:#?}\nif they had to change: cargo vm golden --bless --reason \"why\""
+    );
+}

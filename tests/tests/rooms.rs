@@ -1,0 +1,60 @@
+//! What each room may touch.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Every Rust source below a folder, with its text.
+fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder of sources") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let text = fs::read_to_string(&path).expect("a source");
+            found.push((path, text));
+        }
+    }
+    found
+}
+
+/// The sources of a folder that mention any of `words` outside of comments.
+fn mentions(folder: &str, words: &[&str]) -> Vec<String> {
+    let folder = root().join(folder);
+    sources(&folder)
+        .into_iter()
+        .filter(|(_, text)| {
+            text.lines()
+                .map(|line| line.split("//").next().unwrap_or(""))
+                .any(|line| words.iter().any(|word| line.contains(word)))
+        })
+        .map(|(path, _)| path.strip_prefix(&folder).expect("below").display().to_string())
+        .collect()
+}
+
+#[test]
+fn the_reference_does_not_know_the_model() {
+    let words = ["vm_nostd", "crate::link", "crate::engine"];
+    assert_eq!(mentions("host-sim/src/reference", &words), [""; 0]);
+    let text = fs::read_to_string(root().join("host-sim/src/reference.rs")).expect("a source");
+    assert!(!text.contains("use vm_nostd"));
+}
+
+#[test]
+fn only_the_scalars_of_the_model_name_a_maths_library() {
+    assert_eq!(mentions("vm-nostd/src", &["libm::"]), ["scalar/float.rs"]);
+}
+
+#[test]
+fn the_model_needs_no_std_no_heap_and_no_unsafe() {
+    assert_eq!(mentions("vm-nostd/src", &["extern crate", "std::", "unsafe "]), [""; 0]);
+}
+
+#[test]
+fn only_the_board_names_the_chip() {
+    assert_eq!(mentions("firmware/src", &["SYST", "set_reload", "stm32"]), ["board.rs"]);
+}
