@@ -21,6 +21,10 @@ pub struct ActivationParams {
 /// The smallest n_f used: below, Af loses its meaning, and at 0 it is undefined.
 const LEAST_EXPONENT: f64 = 0.2;
 
+/// A frequency that rises from 0 as the square of time has changed by four times its value at the
+/// tick's middle; nothing that two lags in a row put out changes faster.
+const STEEPEST: f64 = 4.0;
+
 impl ActivationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("activation.scale", self.scale, 0.05, 10.0)?;
@@ -42,8 +46,8 @@ pub(crate) struct ActivationFrequency<S> {
     /// nf0 - nf1 and nf1.
     exponent: [S; 2],
     scale: S,
-    /// Keeps the logarithm in its domain; Af is 0 there to the last bit.
     least: S,
+    steepest: S,
 }
 
 /// Af at one fascicle length, ready for any frequency.
@@ -54,7 +58,10 @@ pub(crate) struct ActivationCurve<S> {
     exponent_slope: S,
     /// 1/(af n_f).
     per_scale: S,
+    /// Keeps the logarithm in its domain; Af is below 1e-7 there for the smallest n_f.
     least: S,
+    /// Largest relative change of frequency in a tick.
+    steepest: S,
 }
 
 impl<S: Scalar> ActivationFrequency<S> {
@@ -65,7 +72,8 @@ impl<S: Scalar> ActivationFrequency<S> {
                 S::from_f64(params.length_dependence),
             ],
             scale: S::from_f64(params.scale),
-            least: S::from_f64(1e-9),
+            least: S::from_f64(1e-36),
+            steepest: S::from_f64(STEEPEST),
         }
     }
 
@@ -78,6 +86,7 @@ impl<S: Scalar> ActivationFrequency<S> {
             exponent_slope: -(slope * reciprocal * reciprocal),
             per_scale: S::ONE / (self.scale * exponent),
             least: self.least,
+            steepest: self.steepest,
         }
     }
 }
@@ -91,8 +100,9 @@ impl<S: Scalar> ActivationCurve<S> {
         let power = (self.exponent * logarithm).exp();
         let remainder = (-power).exp();
         // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
-        let change = self.exponent * frequency_change / inside
-            + (logarithm - S::ONE) * self.exponent_slope * length_change;
+        let relative = (frequency_change / inside).max(-self.steepest).min(self.steepest);
+        let change =
+            self.exponent * relative + (logarithm - S::ONE) * self.exponent_slope * length_change;
         (S::ONE - remainder, remainder * power * change)
     }
 }

@@ -18,6 +18,8 @@ mod force_length;
 mod force_velocity;
 mod lag;
 mod muscle;
+#[cfg(test)]
+mod oracle;
 mod params;
 mod passive;
 mod presets;

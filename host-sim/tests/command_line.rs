@@ -1,0 +1,254 @@
+//! The program `vm` as a user meets it: its files, its messages, its exit codes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
+const HEADER: &str = "t_s,activation,path_length_m,stim_hz\n";
+
+/// A folder with a muscle and an input file, and what `vm run` makes of them.
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new(muscle: &str, input: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::write(folder.path().join("m.toml"), muscle).expect("a muscle file");
+        fs::write(folder.path().join("in.csv"), input).expect("an input file");
+        fs::write(folder.path().join("out.csv"), "as it was").expect("an output file");
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, mode: &str, arithmetic: &str) -> Output {
+        vm(&[
+            "run".as_ref(),
+            "--muscle".as_ref(),
+            self.path("m.toml").as_ref(),
+            "--input".as_ref(),
+            self.path("in.csv").as_ref(),
+            "--output".as_ref(),
+            self.path("out.csv").as_ref(),
+            "--mode".as_ref(),
+            mode.as_ref(),
+            "--arithmetic".as_ref(),
+            arithmetic.as_ref(),
+        ])
+    }
+
+    /// The run is refused with exit code 2, a message with all of `words`, and no file touched.
+    fn refused(&self, words: &[&str]) {
+        let output = self.run("continuous", "f32");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        for word in words {
+            assert!(message.contains(word), "no \"{word}\" in: {message}");
+        }
+        let text = fs::read_to_string(self.path("out.csv")).expect("the output file");
+        assert_eq!(text, "as it was", "{message}");
+        let left = fs::read_dir(self.folder.path()).expect("the folder").count();
+        assert_eq!(left, 3, "no file left behind");
+    }
+}
+
+fn vm(arguments: &[&Path]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vm")).args(arguments).output().expect("vm runs")
+}
+
+/// A muscle file with a line replaced.
+fn muscle(line: &str, other: &str) -> String {
+    assert!(MUSCLE.contains(line), "{line}");
+    MUSCLE.replacen(line, other, 1)
+}
+
+fn rows(text: &str) -> String {
+    format!("{HEADER}{text}")
+}
+
+const GOOD: &str = "0,0,0.16,0\n0.001,0.5,0.16,0\n0.002,0.5,0.16,0\n";
+
+#[test]
+fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("mass_g = 97.5", "mass_g = -97.5", &["mass_g = -97.5", "between 0.01 and 20000"]),
+        ("mass_g = 97.5", "mass_g = 0", &["mass_g = 0", "between 0.01"]),
+        ("mass_g = 97.5", "mass_g = nan", &["mass_g = NaN", "between"]),
+        ("mass_g = 97.5", "mass_g = inf", &["mass_g = inf", "between"]),
+        ("mass_g = 97.5", "mass_g = \"heavy\"", &["line 3", "string", "f64"]),
+        ("mass_g = 97.5", "mass_kg = 1", &["unknown field `mass_kg`", "mass_g"]),
+        ("mass_g = 97.5", "", &["missing field `mass_g`"]),
+        ("tendon_length_cm = 2.0", "tendon_length_cm = -1", &["tendon_length_cm = -1", "0.1 and"]),
+        ("max_path_length_cm = 18.4", "max_path_length_cm = 99", &["max_path_length_cm = 99"]),
+        ("saturation = 0.8", "saturation = 1.5", &["recruitment_saturation = 1.5", "0.01 and 1"]),
+        ("\"paper-table-1\"", "\"paper\"", &["coefficients = \"paper\"", "human-vm4"]),
+        ("fraction = 0.6", "fraction = 0.7", &["fraction = 1.1", "add to 1"]),
+        ("fraction = 0.6", "fraction = -0.6", &["fiber[0].fraction = -0.6", "between"]),
+        ("table-1/slow", "table-1/slower", &["fiber[0].preset", "slower", "feline-vm4/fast"]),
+        ("fraction = 0.4", "fraction = 0.4\nbeta = -1", &["fiber[1].beta = -1", "0.1 and 10"]),
+        ("fraction = 0.4", "fraction = 0.4\nbeta = nan", &["fiber[1].beta = nan", "finite"]),
+        ("fraction = 0.4", "fraction = 0.4\nbeta = \"b\"", &["fiber[1].beta", "a number"]),
+        ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),
+        ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "at least 1"]),
+        ("fraction = 0.4", "fraction = 0.4\nTf1_ms = 0", &["fiber[1].Tf1_ms = 0", "1 and 10000"]),
+        ("fraction = 0.4", "fraction = 0.4\ncV0 = -50", &["fiber[1].cV0", "pole"]),
+        ("fraction = 0.4", "fraction = 0.4\nnf0 = 0.5\nnf1 = 20", &["fiber[1].nf1", "n_f"]),
+        ("fraction = 0.4", "fraction = 0.4\naV0 = 3", &["aV0 + aV1 L", "-1"]),
+        ("fraction = 0.4", "fraction = 0.4\nrank = 2.5", &["fiber[1].rank = 2.5", "whole number"]),
+        ("preset = \"paper-table-1/slow\"", "", &["fiber[0].rank", "no preset"]),
+    ];
+    for (line, other, words) in cases {
+        let mut expected = vec!["m.toml"];
+        expected.extend(*words);
+        Bench::new(&muscle(line, other), &rows(GOOD)).refused(&expected);
+    }
+}
+
+#[test]
+fn an_input_file_that_cannot_be_is_refused_by_line_and_column() {
+    let cases: &[(&str, &[&str])] = &[
+        ("", &["line 1", "column t_s", "header"]),
+        ("t_s,activation,path,stim_hz\n0,0,0.16,0\n", &["line 1", "path_length_m", "\"path\""]),
+        (HEADER, &["t_s", "0 rows"]),
+        (&rows("0,0,0.16,0\n"), &["t_s", "1 row"]),
+        (&rows("0,0,0.16,0\n0.001,0,0.16\n"), &["line 3", "stim_hz", "3 cells"]),
+        (&rows("0,0,0.16,0\n0.001,0,0.16,0,9\n"), &["line 3", "5 cells"]),
+        (&rows("0,0,0.16,0\n0.001,x,0.16,0\n"), &["line 3", "activation", "\"x\""]),
+        (&rows("0,0,0.16,0\n0.001,0,nan,0\n"), &["line 3", "path_length_m", "\"nan\""]),
+        (&rows("0,0,0.16,0\n0.001,0,0.16,inf\n"), &["line 3", "stim_hz", "\"inf\""]),
+        (&rows("0,0,0.16,0\n0.001,,0.16,0\n"), &["line 3", "activation", "\"\""]),
+        (
+            &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.001,0,0.16,0\n"),
+            &["line 4", "t_s", "does not come after"],
+        ),
+        (
+            &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.003,0,0.16,0\n0.004,0,0.16,0\n"),
+            &["line 4", "t_s", "0.002"],
+        ),
+        (&rows("0,0,0.16,0\n0.01,0,0.16,0\n"), &["t_s", "0.01", "between 0.0001 and 0.002"]),
+        (&rows("0,0,0.5,0\n0.001,0,0.16,0\n"), &["line 2", "path_length_m", "0.5", "0.184"]),
+    ];
+    for (input, words) in cases {
+        let mut expected = vec!["in.csv"];
+        expected.extend(*words);
+        Bench::new(MUSCLE, input).refused(&expected);
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let bench = Bench::new(MUSCLE, &rows(GOOD));
+    fs::remove_file(bench.path("in.csv")).expect("a file to remove");
+    let output = bench.run("fes", "reference");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("in.csv"));
+}
+
+#[test]
+fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
+    let vector = include_str!("../data/vectors/fes_steps.csv");
+    for arithmetic in ["reference", "f32", "f64"] {
+        let bench = Bench::new(MUSCLE, vector);
+        let output = bench.run("fes", arithmetic);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = fs::read_to_string(bench.path("out.csv")).expect("the output file");
+        let mut lines = text.lines();
+        let header = lines.next();
+        assert_eq!(
+            header,
+            Some("t_s,force_n,fascicle_length_l0,fascicle_velocity_l0_per_s,status")
+        );
+        assert_eq!(text.lines().count(), vector.lines().count());
+        // Against the force in the vector's fifth column, in N.
+        for (line, expected) in lines.zip(vector.lines().skip(1)) {
+            let cell = |text: &str, index: usize| {
+                text.split(',').nth(index).expect("a cell").parse::<f64>().expect("a number")
+            };
+            assert_eq!(cell(line, 0), cell(expected, 0));
+            assert!((cell(line, 1) - cell(expected, 4)).abs() < 0.1, "{line} {expected}");
+            assert!(line.ends_with(",ok"), "{line}");
+        }
+    }
+}
+
+#[test]
+fn what_was_saturated_is_named_in_the_status() {
+    let input = rows("0,0,0.16,0\n0.001,1.5,0.16,0\n0.002,0.5,0.3,-4\n");
+    let bench = Bench::new(MUSCLE, &input);
+    assert!(bench.run("fes", "f32").status.success());
+    let text = fs::read_to_string(bench.path("out.csv")).expect("the output file");
+    let statuses: Vec<&str> = text.lines().filter_map(|line| line.rsplit(',').next()).collect();
+    assert_eq!(statuses[1..3], ["ok", "ACTIVATION_CLIPPED"]);
+    assert!(statuses[3].starts_with("FREQUENCY_CLIPPED|PATH_LENGTH_CLIPPED"), "{}", statuses[3]);
+}
+
+#[test]
+fn types_may_be_listed_in_any_order_and_overridden_by_name() {
+    let run = |muscle: &str| {
+        let bench = Bench::new(muscle, &rows(GOOD));
+        let output = bench.run("continuous", "f32");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(bench.path("out.csv")).expect("the output file")
+    };
+    let (head, fibers) = MUSCLE.split_once("[[fiber]]").expect("fibre tables");
+    let (slow, fast) = fibers.split_once("[[fiber]]").expect("two fibre tables");
+    let swapped = format!("{head}[[fiber]]{fast}\n[[fiber]]{slow}");
+    assert_eq!(run(MUSCLE), run(&swapped));
+    let same = muscle("fraction = 0.4", "fraction = 0.4\nunits = 30\nomega = 0.75\nTf1_ms = 20.6");
+    assert_eq!(run(MUSCLE), run(&same));
+    let other = muscle("fraction = 0.6", "fraction = 0.6\nTf1_ms = 10");
+    assert_ne!(run(MUSCLE), run(&other));
+}
+
+#[test]
+fn a_plot_shows_force_length_velocity_and_inputs() {
+    let bench = Bench::new(MUSCLE, &rows(GOOD));
+    assert!(bench.run("continuous", "f32").status.success());
+    let (out, input, svg) = (bench.path("out.csv"), bench.path("in.csv"), bench.path("out.svg"));
+    let arguments: [&Path; 7] = [
+        "plot".as_ref(),
+        "--run".as_ref(),
+        &out,
+        "--input".as_ref(),
+        &input,
+        "--output".as_ref(),
+        &svg,
+    ];
+    let output = vm(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = fs::read_to_string(&svg).expect("a picture");
+    assert!(text.starts_with("<svg"));
+    for label in ["force (N)", "length (L0)", "velocity (L0/s)", "activation", "path (m)", "pps"] {
+        assert!(text.contains(label), "{label}");
+    }
+}
+
+#[test]
+fn verify_as_json_has_the_agreed_keys_and_passes() {
+    let output = vm(&["verify".as_ref(), "--json".as_ref()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let rows = rows.as_array().expect("an array");
+    assert!(rows.len() > 100, "{} rows", rows.len());
+    for row in rows {
+        let keys: Vec<&str> = row.as_object().expect("an object").keys().map(|k| &**k).collect();
+        let mut agreed = [
+            "scenario",
+            "mode",
+            "arithmetic",
+            "against",
+            "max_pct_f0",
+            "rms_pct_f0",
+            "bias_pct_f0",
+            "tolerance_pct_f0",
+            "pass",
+        ];
+        agreed.sort_unstable();
+        assert_eq!(keys, agreed);
+        assert_eq!(row["pass"], true, "{row}");
+    }
+}
