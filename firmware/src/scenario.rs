@@ -29,7 +29,7 @@ impl Inputs for Scenario {
         let held = share(epoch, 0);
         let next = share(epoch + 1, 0);
         // Every other epoch ramps to the next level instead of holding its own.
-        let ramp = if epoch % 2 == 0 { (tick % HOLD) as f32 / HOLD as f32 } else { 0.0 };
+        let ramp = if epoch.is_multiple_of(2) { (tick % HOLD) as f32 / HOLD as f32 } else { 0.0 };
         let activation = held + (next - held) * ramp;
 
         // The path starts where the muscles rest, and swings wide enough for a slack tendon.

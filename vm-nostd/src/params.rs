@@ -96,8 +96,8 @@ pub struct MuscleParams<const N: usize> {
     pub fascicle_length: f64,
     /// Optimal tendon length L_se0, m; 0.001 to 2.
     pub tendon_length: f64,
-    /// Longest musculotendon path L_mt_max, m; such that [`maximum_fascicle_length`]
-    /// (Self::maximum_fascicle_length) is 0.8 to 2.
+    /// Longest musculotendon path L_mt_max, m; such that
+    /// [`MuscleParams::maximum_fascicle_length`] is 0.8 to 2.
     pub max_path_length: f64,
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
