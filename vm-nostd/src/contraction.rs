@@ -171,7 +171,8 @@ impl<S: Scalar> Contraction<S> {
             substep,
             base,
             extension: extension.middle + extension.change * time,
-            gains: contractile.gains.map(|gain| gain.middle + gain.change * time),
+            // Drawn out to the tick's ends, a gain that falls fast would pass 0.
+            gains: contractile.gains.map(|gain| (gain.middle + gain.change * time).max(S::ZERO)),
             passive: contractile.passive.middle
                 + contractile.passive.change * time
                 + contractile.passive_slope * base.lengthening,

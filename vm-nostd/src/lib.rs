@@ -7,7 +7,7 @@
 //!
 //! Source: Song, Raphael, Lan & Loeb, "Computationally efficient models of neuromuscular
 //! recruitment and mechanics", J. Neural Eng. 5 (2008) 175-184.
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 
 mod activation;
 mod contraction;

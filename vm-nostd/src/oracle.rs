@@ -1,8 +1,6 @@
 //! Tests of every element against the paper's own formula, in `f64`, and of every slope against
 //! a difference quotient.
 
-extern crate std;
-
 use crate::activation::ActivationFrequency;
 use crate::excitation::Excitation;
 use crate::force_length::ForceLength;
@@ -16,7 +14,6 @@ use crate::scalar::Scalar;
 use crate::softplus::softplus;
 use crate::tendon::Tendon;
 use crate::time_step::TimeStep;
-use std::vec::Vec;
 
 const TYPES: [FiberType; 5] = [
     paper_table_1::SLOW,
