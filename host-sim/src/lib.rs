@@ -2,6 +2,7 @@
 
 pub mod coefficients;
 pub mod command_line;
+pub mod cycles;
 pub mod engine;
 pub mod golden;
 pub mod link;
@@ -11,6 +12,7 @@ pub mod plot;
 pub mod readme;
 pub mod reference;
 pub mod scenario;
+pub mod target;
 pub mod tolerance;
 pub mod trace;
 pub mod verify;

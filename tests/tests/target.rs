@@ -4,13 +4,13 @@
 //! `VM_REQUIRE_TARGET` set, as in CI, a skip is a failure.
 
 use firmware::{Frame, Record, Rig, Scenario, TICKS};
+use host_sim::target::{self, TargetError};
 use object::{Object, ObjectSymbol};
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-const TARGET: &str = "thumbv7em-none-eabihf";
 /// The scenario lasts 12 s on the target; a busy machine may take longer.
 const PATIENCE: Duration = Duration::from_secs(240);
 
@@ -20,53 +20,20 @@ fn skip(reason: &str) {
     eprintln!("SKIPPED: {reason}");
 }
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// Builds a program of the firmware for the target; the reason why not, if it cannot be had.
-fn build(program: &str) -> Result<PathBuf, String> {
-    let added = Command::new("rustup").args(["target", "add", TARGET]).current_dir(root()).output();
-    match added {
-        Ok(output) if output.status.success() => {}
-        Ok(output) => {
-            return Err(format!("rustup target add: {}", String::from_utf8_lossy(&output.stderr)));
-        }
-        // Without rustup the target may still be there.
-        Err(_) => {}
+/// Builds a program, unless the target's library is not to be had; panics if it does not build.
+fn build(program: &str) -> Result<PathBuf, TargetError> {
+    match target::build(program, &[]) {
+        Err(error @ TargetError::Build { .. }) => panic!("{error}"),
+        other => other,
     }
-    let installed = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", TARGET])
-        .current_dir(root())
-        .output()
-        .ok()
-        .map(|output| PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()));
-    if !installed.is_some_and(|folder| folder.is_dir()) {
-        return Err(format!("the library of {TARGET} is not installed"));
-    }
-    // A folder of its own: the host's may be locked by the cargo that runs this test.
-    let folder = root().join("target/on-target");
-    let output = Command::new(env!("CARGO"))
-        .args(["build", "--release", "--package", "firmware", "--features", "board"])
-        .args(["--target", TARGET, "--bin", program, "--target-dir"])
-        .arg(&folder)
-        .current_dir(root())
-        .output()
-        .expect("cargo runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Ok(folder.join(TARGET).join("release").join(program))
 }
 
 /// Runs a program on the emulated chip and returns what it wrote.
-fn emulate(program: &Path) -> Result<Vec<u8>, String> {
-    let mut child = Command::new("qemu-system-arm")
-        .args(["-M", "netduinoplus2", "-display", "none", "-serial", "null", "-monitor", "none"])
-        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-        .arg(program)
-        .stdin(Stdio::null())
+fn emulate(program: &Path) -> Result<Vec<u8>, TargetError> {
+    let mut child = target::emulator(program)
         .stdout(Stdio::piped())
         .spawn()
-        .map_err(|error| format!("qemu-system-arm: {error} (apt-get install qemu-system-arm)"))?;
+        .map_err(target::start_error(target::QEMU))?;
     let mut outlet = child.stdout.take().expect("a piped output");
     let reader = std::thread::spawn(move || {
         let mut bytes = Vec::new();
@@ -111,7 +78,7 @@ fn the_target_leaves_the_same_bits_as_the_host_in_every_tick() {
     const { assert!(TICKS >= 10_000) };
     let on_target = match build("firmware").and_then(|program| emulate(&program)) {
         Ok(bytes) => bytes,
-        Err(reason) => return skip(&reason),
+        Err(reason) => return skip(&reason.to_string()),
     };
     let on_host = on_host();
     assert_eq!(on_target.len(), on_host.len(), "bytes of {TICKS} ticks");
@@ -144,7 +111,7 @@ fn the_scenario_visits_what_a_muscle_can_meet() {
 fn no_panic_is_reachable_from_a_program_that_only_steps() {
     let program = match build("step") {
         Ok(program) => program,
-        Err(reason) => return skip(&reason),
+        Err(reason) => return skip(&reason.to_string()),
     };
     let image = std::fs::read(program).expect("the built image");
     let file = object::File::parse(&*image).expect("an ELF file");

@@ -1,0 +1,10 @@
+//! What a tick costs on a Cortex-M4F, in cycles, from the instructions that really execute.
+//!
+//! QEMU runs the image and a plugin streams the address of every instruction; each address is
+//! decoded once, and a timing model of the core adds up cycles. Flash wait states are not in it.
+
+mod instruction;
+mod timing;
+
+pub use instruction::{Class, Decoder, Instruction};
+pub use timing::{Core, Setting};
