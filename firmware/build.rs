@@ -1,9 +1,21 @@
-//! Linker arguments for the target; nothing on a host.
+//! Linker arguments for the target, and the inputs of the bench; nothing else on a host.
 
-use std::env;
+use std::path::Path;
+use std::{env, fs};
 
 fn main() {
     println!("cargo::rerun-if-changed=../memory.x");
+    println!("cargo::rerun-if-env-changed=VM_BENCH_INPUTS");
+    let output = env::var("OUT_DIR").expect("cargo names a folder for output");
+    let inputs = match env::var("VM_BENCH_INPUTS") {
+        Ok(path) => {
+            println!("cargo::rerun-if-changed={path}");
+            fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+        }
+        // Without inputs the bench builds, and has nothing to run.
+        Err(_) => Vec::new(),
+    };
+    fs::write(Path::new(&output).join("bench_inputs.bin"), inputs).expect("a file to write");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         let here = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
         println!("cargo::rustc-link-search={here}/..");

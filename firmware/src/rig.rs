@@ -1,14 +1,14 @@
 //! Two muscles and the tick that steps them.
 
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, FiberParams, Input, MuscleParams, Output, ParameterError, State,
-    TimeStep, paper_table_1,
+    ContinuousMuscle, FesMuscle, FiberParams, Input, IntramuscularFes, MuscleParams,
+    NaturalContinuous, Output, ParameterError, State, TimeStep, paper_table_1,
 };
 
 /// Fibre types of each muscle.
 const TYPES: usize = 2;
 /// Words that a muscle's state is saved in.
-const STATE_WORDS: usize = State::<f32, TYPES>::WORDS;
+const STATE_WORDS: usize = State::<f32, NaturalContinuous, TYPES>::WORDS;
 /// Words of a muscle's output: force, length, velocity, status.
 const OUTPUT_WORDS: usize = 4;
 /// Words of a [`Frame`].
@@ -33,14 +33,14 @@ pub trait Record {
 #[derive(Clone, Debug)]
 pub struct Rig {
     continuous: ContinuousMuscle<f32, TYPES>,
-    continuous_state: State<f32, TYPES>,
+    continuous_state: State<f32, NaturalContinuous, TYPES>,
     fes: FesMuscle<f32, TYPES>,
-    fes_state: State<f32, TYPES>,
+    fes_state: State<f32, IntramuscularFes, TYPES>,
     tick: u32,
 }
 
 /// The paper's validation muscle, "deltoid posterior".
-const MUSCLE: MuscleParams<TYPES> = MuscleParams {
+pub const MUSCLE: MuscleParams<TYPES> = MuscleParams {
     mass: 97.5e-3,
     fascicle_length: 0.11,
     tendon_length: 0.02,

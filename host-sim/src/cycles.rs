@@ -3,8 +3,14 @@
 //! QEMU runs the image and a plugin streams the address of every instruction; each address is
 //! decoded once, and a timing model of the core adds up cycles. Flash wait states are not in it.
 
+mod bench;
+mod image;
 mod instruction;
 mod timing;
+mod trace;
 
+pub use bench::{BenchError, Case, Cost, Measured, measure};
+pub use image::{Function, Image, ImageError};
 pub use instruction::{Class, Decoder, Instruction};
 pub use timing::{Core, Setting};
+pub use trace::{TraceError, execute};

@@ -187,9 +187,11 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
         return Err(("TL_ms".to_owned(), time_constant.to_string(), limit));
     }
     let fiber_type = coefficients::fiber_type(&row).map_err(|error| match error {
-        RowError::Missing(name) => {
-            (name.to_owned(), "(none)".to_owned(), "has no preset to come from: give it".to_owned())
-        }
+        RowError::Missing(name) => (
+            name.to_owned(),
+            "(missing)".to_owned(),
+            "give it, or a preset to take it from".to_owned(),
+        ),
         RowError::Rank(rank) => {
             ("rank".to_owned(), rank.to_string(), "must be a whole number from 1 to 255".to_owned())
         }

@@ -125,6 +125,12 @@ pub fn all() -> Vec<Scenario> {
             let stretch = smooth((t - 0.5) / 0.11) - smooth((t - 1.0) / 0.4);
             [0.7, 0.14 + 0.04 * stretch, 25.0]
         }));
+        scenarios.push(generated("velocity_kinks", paper_muscle(), mode, 1.5, |t| {
+            // Every 0.25 s the path sets off at 4.6 L_ce0/s, or stops as suddenly.
+            let moving = t.rem_euclid(0.5) < 0.25;
+            let swing = if moving { libm::sin(TAU * 10.0 * t) } else { 0.0 };
+            [0.5, PATH + 0.008 * swing, 30.0]
+        }));
         scenarios.push(generated("frequency_sweep", paper_muscle(), mode, 2.0, |t| {
             [0.2 + 0.7 * smooth((t - 0.2) / 0.4), PATH, 2.0 + 40.0 * smooth((t - 0.3) / 1.5)]
         }));
@@ -147,7 +153,7 @@ pub fn all() -> Vec<Scenario> {
     let vectors = &scenarios[..VECTORS.len()];
     let mut others: Vec<Scenario> = scenarios.iter().map(|s| resampled(s, "0.5ms", 1, 2)).collect();
     others.extend(vectors.iter().map(|s| resampled(s, "0.1ms", 1, 10)));
-    others.extend(vectors.iter().map(|s| resampled(s, "2ms", 2, 1)));
+    others.extend(scenarios.iter().map(|s| resampled(s, "2ms", 2, 1)));
     scenarios.extend(others);
     scenarios
 }

@@ -91,8 +91,11 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     };
     let [(_, first), .., (_, last)] = rows.as_slice() else {
         let line = rows.last().map_or(1, |(line, _)| *line) + 1;
-        let problem =
-            format!("{} rows: a trace needs at least 2, to show its time step", rows.len());
+        let problem = format!(
+            "{} row{}: a trace needs at least 2, to show its time step",
+            rows.len(),
+            if rows.len() == 1 { "" } else { "s" }
+        );
         return Err(cell_error(path, line, "t_s", problem));
     };
     for (index, pair) in rows.windows(2).enumerate() {

@@ -96,7 +96,7 @@ fn any_number() -> impl Strategy<Value = f32> {
     ]
 }
 
-fn all_finite(output: &Output<f32>, state: &State<f32, TYPES>) -> bool {
+fn all_finite<R>(output: &Output<f32>, state: &State<f32, R, TYPES>) -> bool {
     let numbers = [output.force, output.fascicle_length, output.fascicle_velocity];
     numbers.into_iter().all(f32::is_finite)
         && state.words().all(|word| f32::from_bits(word).is_finite())
@@ -114,7 +114,7 @@ fn drive<R: Recruitment<f32, TYPES>>(
     params: &Params,
     step: TimeStep,
     segments: &[Segment],
-    mut check: impl FnMut(&State<f32, TYPES>, Input<f32>, Output<f32>),
+    mut check: impl FnMut(&State<f32, R, TYPES>, Input<f32>, Output<f32>),
 ) {
     let (shortest, longest) = path_range(params);
     let mut path = shortest + 0.6 * (longest - shortest);
@@ -210,7 +210,7 @@ fn continues_identically<R: Recruitment<f32, TYPES>>(
     segments: &[Segment],
 ) {
     let muscle = Muscle::<f32, R, TYPES>::build(params, step).expect("a valid muscle");
-    let mut restored: Option<State<f32, TYPES>> = None;
+    let mut restored: Option<State<f32, R, TYPES>> = None;
     drive(&muscle, params, step, segments, |state, input, output| {
         if let Some(other) = &mut restored {
             let again = muscle.step(other, input);
@@ -218,7 +218,7 @@ fn continues_identically<R: Recruitment<f32, TYPES>>(
             assert!(state.words().eq(other.words()), "{state:?} {other:?}");
         }
         let saved: Vec<u32> = state.words().collect();
-        assert_eq!(saved.len(), State::<f32, TYPES>::WORDS);
+        assert_eq!(saved.len(), State::<f32, R, TYPES>::WORDS);
         restored = Some(muscle.restore(saved).expect("a state that a tick left"));
     });
 }

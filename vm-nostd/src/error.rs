@@ -5,7 +5,8 @@ use core::fmt;
 /// A parameter that was refused, with its value and the limit it broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
-    /// The parameter, by the name of its field.
+    /// The parameter, by the name of its field. Where not a field but what follows from it is
+    /// refused, that stands behind a colon, and `value` and `limit` are its own.
     pub field: &'static str,
     /// Which fibre type it belongs to, counted from 0; `None` for the muscle's own.
     pub fiber: Option<usize>,
@@ -17,6 +18,7 @@ pub struct ParameterError {
 
 /// What a parameter must be, in its field's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Limit {
     /// A number between two bounds, both allowed.
     Within {

@@ -2,7 +2,7 @@
 //! or a prosthesis steps once per tick inside its firmware.
 //!
 //! [`MuscleParams`] are validated once, when a [`Muscle`] is built for a [`TimeStep`]; after
-//! that [`Muscle::step`] cannot fail, allocates nothing and does the same work in every tick.
+//! that [`Muscle::step`] cannot fail, allocates nothing and has no loop that depends on data.
 //! Inputs outside the stated domain are saturated and reported in [`Output::status`].
 //!
 //! Source: Song, Raphael, Lan & Loeb, "Computationally efficient models of neuromuscular

@@ -17,6 +17,7 @@ use crate::scalar::Scalar;
 use crate::state::{FiberState, RestoreError, State};
 use crate::time_step::TimeStep;
 use crate::yielding::Yielding;
+use core::marker::PhantomData;
 
 /// Inputs of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +34,10 @@ pub struct Input<S> {
 
 /// What one tick yields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Output<S> {
-    /// Tendon force F0 F_se, N.
+    /// Tendon force F0 F_se, N; never negative. It has no upper bound but the tendon's stiffness: a
+    /// path that jumps, as a faulty sensor may, stretches the tendon by all of it.
     pub force: S,
     /// Fascicle length L, L_ce0.
     pub fascicle_length: S,
@@ -116,8 +119,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     }
 
     /// The muscle at rest on a path of `path_length` m: not activated, not moving, tendon and
-    /// parallel elastic element in balance.
-    pub fn rest(&self, path_length: S) -> Result<State<S, N>, ParameterError> {
+    /// parallel elastic element in balance. Refused outside of
+    /// [`path_length_range`](Self::path_length_range).
+    pub fn rest(&self, path_length: S) -> Result<State<S, R, N>, ParameterError> {
         let range = &self.domain.path_length;
         within("path_length", path_length.to_f64(), range.least.to_f64(), range.most.to_f64())?;
         let tendon = &self.contraction.tendon;
@@ -140,19 +144,30 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             path_length,
             effective_activation: S::ZERO,
             fibers: self.fibers.map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
+            recruitment: PhantomData,
         })
+    }
+
+    /// Maximal isometric force F0, N.
+    pub fn max_isometric_force(&self) -> S {
+        self.max_isometric_force
+    }
+
+    /// Shortest and longest path (m) that are taken as they are; others are clipped and flagged.
+    pub fn path_length_range(&self) -> (S, S) {
+        (self.domain.path_length.least, self.domain.path_length.most)
     }
 
     /// A state saved by [`State::words`], refused unless it is one this muscle can be in.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
-    ) -> Result<State<S, N>, RestoreError> {
+    ) -> Result<State<S, R, N>, RestoreError> {
         State::from_words(words, &self.domain, &self.contraction.tendon)
     }
 
     /// The state as an output, as it was after the tick that left it: force, length, velocity.
-    pub fn observe(&self, state: &State<S, N>) -> Output<S> {
+    pub fn observe(&self, state: &State<S, R, N>) -> Output<S> {
         let tendon = &self.contraction.tendon;
         Output {
             force: self.max_isometric_force * tendon.pull(state.tendon_extension).0,
@@ -162,13 +177,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
     }
 
-    /// Steps one tick. Never fails, never loops on data; what had to be saturated is in the
+    /// Steps one tick. Never fails; no loop depends on data; what had to be saturated is in the
     /// output's status, and the state stays finite whatever comes.
     ///
     /// Slow quantities (excitation, sag, yield, activation, the lengths' influence) are taken at
     /// the middle of the tick, with their change across it; the mechanics are then integrated
     /// implicitly on top of them.
-    pub fn step(&self, state: &mut State<S, N>, input: Input<S>) -> Output<S> {
+    pub fn step(&self, state: &mut State<S, R, N>, input: Input<S>) -> Output<S> {
         let (input, mut status) = self.domain.admit(input, state.path_length);
         let tendon = &self.contraction.tendon;
 
@@ -179,7 +194,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside || too_fast);
 
         let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
-        let recruited = self.recruitment.advance(excitations, state, &input, middle);
+        let recruited = self.recruitment.advance(
+            excitations,
+            &mut state.effective_activation,
+            &mut state.fibers,
+            &input,
+            middle,
+        );
         let mut contractile = self.contractile(state, &recruited, middle, travel);
         // Brought from the middle, where it was taken, to the start.
         contractile.passive.middle =
@@ -204,7 +225,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     }
 
     /// Keeps length and velocity inside what the state can hold, and says what it had to keep.
-    fn confine(&self, state: &mut State<S, N>) -> Status {
+    fn confine(&self, state: &mut State<S, R, N>) -> Status {
         let tendon = &self.contraction.tendon;
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let (length, stopped) = self.domain.fascicle_length.clip(length);
@@ -226,7 +247,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// `middle` half way and travel by `travel` (both L_ce0). Advances sag.
     fn contractile(
         &self,
-        state: &mut State<S, N>,
+        state: &mut State<S, R, N>,
         recruited: &[Recruited<S>; N],
         middle: S,
         travel: S,

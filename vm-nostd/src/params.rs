@@ -56,7 +56,7 @@ impl FiberType {
 /// A fibre type and its share of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberParams {
-    /// Share of the physiological cross-sectional area, more than 0 and at most 1.
+    /// Share of the physiological cross-sectional area; 1e-6 to 1.
     pub fraction: f64,
     /// The type.
     pub fiber_type: FiberType,
@@ -90,7 +90,7 @@ impl ElementParams {
 /// A muscle of `N` fibre types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscleParams<const N: usize> {
-    /// Mass m, kg; 1e-5 to 20.
+    /// Mass m, kg; 1e-5 to 20. It makes the cross section, and with it F0, and half of it moves.
     pub mass: f64,
     /// Optimal fascicle length L_ce0, m; 0.005 to 1.
     pub fascicle_length: f64,

@@ -10,11 +10,14 @@ use crate::excitation::Excitation;
 use crate::muscle::Input;
 use crate::params::MuscleParams;
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::State;
+use crate::state::FiberState;
 use crate::time_step::TimeStep;
+use core::fmt::Debug;
 
 /// A mode of recruitment, for muscles of `N` fibre types.
-pub trait Recruitment<S: Scalar, const N: usize>: Sealed + Sized {
+pub trait Recruitment<S: Scalar, const N: usize>:
+    Sealed + Copy + Debug + PartialEq + 'static
+{
     #[doc(hidden)]
     type Coefficients: RecruitmentTick<S, N>;
 }
@@ -31,7 +34,8 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        state: &mut State<S, N>,
+        effective_activation: &mut S,
+        fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N];

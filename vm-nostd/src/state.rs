@@ -4,13 +4,14 @@ use crate::domain::Domain;
 use crate::scalar::Scalar;
 use crate::tendon::Tendon;
 use core::fmt;
+use core::marker::PhantomData;
 
-/// The state of a muscle of `N` fibre types, plain data: copy it to save it.
+/// The state of a muscle of `N` fibre types recruited as `R` says, plain data: copy it to save it.
 ///
 /// [`words`](Self::words) gives its bits, for storage and comparison, and
 /// [`Muscle::restore`](crate::Muscle::restore) takes them back after checking them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<S, const N: usize> {
+pub struct State<S, R, const N: usize> {
     /// (L_se - LrT)/kT: how far the tendon is extended beyond slack, in widths of its toe.
     pub(crate) tendon_extension: S,
     /// V, L_ce0/s.
@@ -20,6 +21,7 @@ pub struct State<S, const N: usize> {
     /// U_eff, 0..1; stays 0 in intramuscular FES.
     pub(crate) effective_activation: S,
     pub(crate) fibers: [FiberState<S>; N],
+    pub(crate) recruitment: PhantomData<R>,
 }
 
 /// The part of the state that each fibre type has of its own.
@@ -54,6 +56,7 @@ impl<S: Scalar> FiberState<S> {
 
 /// A saved state was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RestoreError {
     /// There were not as many words as the state has.
     Length {
@@ -83,7 +86,7 @@ impl core::error::Error for RestoreError {}
 const OF_MUSCLE: usize = 4;
 const PER_FIBER: usize = 6;
 
-impl<S: Scalar, const N: usize> State<S, N> {
+impl<S: Scalar, R, const N: usize> State<S, R, N> {
     /// How many words the state is saved in.
     pub const WORDS: usize = OF_MUSCLE + PER_FIBER * N;
 
@@ -92,7 +95,14 @@ impl<S: Scalar, const N: usize> State<S, N> {
         self.fascicle_velocity
     }
 
-    /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order.
+    /// Effective activation U_eff, 0..1, of natural continuous recruitment.
+    pub fn effective_activation(&self) -> S {
+        self.effective_activation
+    }
+
+    /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
+    /// extension (kT), fascicle velocity (L_ce0/s), path length (m), effective activation; then of
+    /// each type f_int, f_eff, Y, the target of Y, S, and the Af foreseen for the next tick.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
             self.tendon_extension,
@@ -131,6 +141,7 @@ impl<S: Scalar, const N: usize> State<S, N> {
             path_length: next(&|value| domain.path_length.contains(value))?,
             effective_activation: next(&share)?,
             fibers: [FiberState::at_rest(S::ONE); N],
+            recruitment: PhantomData,
         };
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let (nearest, _) = domain.fascicle_length.clip(length);

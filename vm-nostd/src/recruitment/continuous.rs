@@ -14,11 +14,11 @@ use crate::muscle::Input;
 use crate::params::MuscleParams;
 use crate::sag::{SagParams, share_above};
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::State;
+use crate::state::FiberState;
 use crate::time_step::TimeStep;
 
 /// Natural continuous recruitment. The stimulation frequency is not used.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NaturalContinuous;
 
 impl Sealed for NaturalContinuous {}
@@ -92,17 +92,18 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        state: &mut State<S, N>,
+        effective_activation: &mut S,
+        fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N] {
         let activation = input.activation;
-        let start = state.effective_activation;
+        let start = *effective_activation;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
         let lag = if activation >= start { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
         let end = lag.at_end(start, activation);
-        state.effective_activation = end;
+        *effective_activation = end;
 
         let (mut sum, mut count) = (S::ZERO, S::ZERO);
         for unit in &self.units {
@@ -120,7 +121,6 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             weight: Course::constant(S::ZERO),
             compression_weight: Course::constant(S::ZERO),
         }; N];
-        let fibers = state.fibers.iter_mut();
         for (((result, unit), fiber), excitation) in
             recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
         {

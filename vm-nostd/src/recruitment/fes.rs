@@ -11,11 +11,11 @@ use crate::muscle::Input;
 use crate::params::MuscleParams;
 use crate::sag::SagParams;
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::State;
+use crate::state::FiberState;
 use crate::time_step::TimeStep;
 
 /// Intramuscular FES: activation is the strength of the stimulus.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IntramuscularFes;
 
 impl Sealed for IntramuscularFes {}
@@ -53,7 +53,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        state: &mut State<S, N>,
+        _effective_activation: &mut S,
+        fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N] {
@@ -64,7 +65,6 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             weight: Course::constant(S::ZERO),
             compression_weight: Course::constant(S::ZERO),
         }; N];
-        let fibers = state.fibers.iter_mut();
         for (((result, unit), fiber), excitation) in
             recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
         {
