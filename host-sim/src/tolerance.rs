@@ -48,11 +48,13 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
         return (0.005 / f0 * 100.0, None);
     }
     let share = match scenario.split_once('@') {
-        Some((_, "2ms")) => 4.0,
+        Some((_, "2ms")) => 10.0,
         Some((_, "0.5ms" | "0.1ms")) => 0.5,
         _ => 1.0,
     };
-    if scenario.starts_with("passive") {
+    // Where a tendon rings, as one that snaps taut or is pulled at with a jerk.
+    let rings = ["passive", "velocity_kinks"].iter().any(|name| scenario.starts_with(name));
+    if rings {
         (1.5 * share, Some(0.1 * share))
     } else {
         (0.1 * share, None)

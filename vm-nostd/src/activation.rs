@@ -24,6 +24,8 @@ const LEAST_EXPONENT: f64 = 0.2;
 /// A frequency that rises from 0 as the square of time has changed by four times its value at the
 /// tick's middle; nothing that two lags in a row put out changes faster.
 const STEEPEST: f64 = 4.0;
+/// exp(-exp(4.5)) is 1e-39: nothing beside 1, and a larger power might overflow.
+const SATURATED: f64 = 4.5;
 
 impl ActivationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
@@ -48,6 +50,7 @@ pub(crate) struct ActivationFrequency<S> {
     scale: S,
     least: S,
     steepest: S,
+    saturated: S,
 }
 
 /// Af at one fascicle length, ready for any frequency.
@@ -62,6 +65,8 @@ pub(crate) struct ActivationCurve<S> {
     least: S,
     /// Largest relative change of frequency in a tick.
     steepest: S,
+    /// Logarithm of the power at which Af is 1 to the last bit.
+    saturated: S,
 }
 
 impl<S: Scalar> ActivationFrequency<S> {
@@ -74,6 +79,7 @@ impl<S: Scalar> ActivationFrequency<S> {
             scale: S::from_f64(params.scale),
             least: S::from_f64(1e-36),
             steepest: S::from_f64(STEEPEST),
+            saturated: S::from_f64(SATURATED),
         }
     }
 
@@ -87,6 +93,7 @@ impl<S: Scalar> ActivationFrequency<S> {
             per_scale: S::ONE / (self.scale * exponent),
             least: self.least,
             steepest: self.steepest,
+            saturated: self.saturated,
         }
     }
 }
@@ -97,7 +104,7 @@ impl<S: Scalar> ActivationCurve<S> {
     pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> (S, S) {
         let inside = frequency.max(self.least);
         let logarithm = (inside * self.per_scale).ln();
-        let power = (self.exponent * logarithm).exp();
+        let power = (self.exponent * logarithm).min(self.saturated).exp();
         let remainder = (-power).exp();
         // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
         let relative = (frequency_change / inside).max(-self.steepest).min(self.steepest);

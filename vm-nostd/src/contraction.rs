@@ -21,10 +21,18 @@ const GAMMA: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
 /// First substep of a tick, s. Inputs jump where a tick begins, and the fascicles follow within
 /// 50 µs: a short first substep resolves what they travel meanwhile.
 const FIRST_SUBSTEP: f64 = 0.05e-3;
-/// Longest of the other substeps, s: they resolve the ringing of a passive muscle.
+/// Longest of the other substeps, s.
 const LONGEST_SUBSTEP: f64 = 0.25e-3;
-/// Newton steps per stage, after the branch is known.
-const NEWTON_STEPS: usize = 2;
+/// The other substeps resolve the ringing of a passive muscle: of angular frequency w, and of
+/// amplitude A in F0 where the path's speed jumps by 1 L_ce0/s, it is w h √A at most. The error
+/// of a step that is second order goes with the square of this.
+const RINGING: f64 = 0.16;
+/// Most of the other substeps: only a muscle far from any anatomy asks for more.
+const MOST_SUBSTEPS: u8 = 40;
+/// Iterations per stage, after the branch is known.
+const ITERATIONS: usize = 2;
+/// The mechanics count as settled if no residual before a stage's last iteration is larger, F0.
+const SETTLED: f64 = 0.25;
 
 /// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +41,14 @@ pub(crate) struct Motion<S> {
     pub(crate) lengthening: S,
     /// L_ce0/s.
     pub(crate) velocity: S,
+}
+
+/// What a tick has done to the mechanics.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Advanced<S> {
+    pub(crate) motion: Motion<S>,
+    /// No stage left its equation far from solved.
+    pub(crate) settled: bool,
 }
 
 /// The contractile element during one tick:
@@ -61,7 +77,9 @@ pub(crate) struct Contraction<S> {
     other: Substep<S>,
     others: u8,
     half: S,
+    two: S,
     speed: S,
+    residual: S,
 }
 
 /// Coefficients of a substep of a given length.
@@ -95,12 +113,28 @@ impl<S: Scalar> Substep<S> {
     }
 }
 
+/// How many substeps cover `rest` (s), for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
+fn ringing_substeps(rest: f64, mass: f64, stiffness: f64) -> u8 {
+    // w² = stiffness/mass and A² = stiffness mass: the loop counts up to (rest w √A/RINGING)⁴,
+    // in squares of squares for want of a square root.
+    let square = |x: f64| x * x;
+    let wanted = square(stiffness / mass) * stiffness * mass;
+    (1..MOST_SUBSTEPS)
+        .find(|&count| {
+            let substep = rest / f64::from(count);
+            substep <= LONGEST_SUBSTEP * (1.0 + 1e-9)
+                && square(square(substep / RINGING)) * wanted <= 1.0
+        })
+        .unwrap_or(MOST_SUBSTEPS)
+}
+
 impl<S: Scalar> Contraction<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
-        let rest = step.seconds() - FIRST_SUBSTEP;
-        // Rounded up, but for the rounding of the quotient itself.
-        let others = (rest / LONGEST_SUBSTEP - 1e-9) as u8 + 1;
         let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
+        let stiffness =
+            params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length;
+        let rest = step.seconds() - FIRST_SUBSTEP;
+        let others = ringing_substeps(rest, mass, stiffness);
         let tendon =
             Tendon::new(&params.elements.tendon, params.fascicle_length, params.tendon_length);
         Self {
@@ -110,7 +144,9 @@ impl<S: Scalar> Contraction<S> {
             other: Substep::new(rest / f64::from(others), step, mass),
             others,
             half: S::from_f64(0.5),
+            two: S::from_f64(2.0),
             speed: S::from_f64(MAXIMUM_SPEED),
+            residual: S::from_f64(SETTLED),
         }
     }
 
@@ -124,17 +160,19 @@ impl<S: Scalar> Contraction<S> {
         velocity: S,
         extension: Course<S>,
         contractile: &Contractile<S, N>,
-    ) -> Motion<S> {
+    ) -> Advanced<S> {
         let start = Motion { lengthening: S::ZERO, velocity };
+        let mut residual = S::ZERO;
         // Time since the tick's middle, in ticks.
         let mut time = -self.half;
-        let mut motion = self.substep(&self.first, start, time, extension, contractile);
+        let mut motion =
+            self.substep(&self.first, start, time, extension, contractile, &mut residual);
         time = time + self.first.share;
         for _ in 0..self.others {
-            motion = self.substep(&self.other, motion, time, extension, contractile);
+            motion = self.substep(&self.other, motion, time, extension, contractile, &mut residual);
             time = time + self.other.share;
         }
-        motion
+        Advanced { motion, settled: residual <= self.residual }
     }
 
     /// One substep from `start` at `time`: two implicit stages, at gamma and at its end.
@@ -145,15 +183,17 @@ impl<S: Scalar> Contraction<S> {
         time: S,
         extension: Course<S>,
         contractile: &Contractile<S, N>,
+        residual: &mut S,
     ) -> Motion<S> {
         let at_first = time + substep.gamma_share;
-        let first = self.stage(substep, start, at_first, extension, contractile, start.velocity);
+        let first =
+            self.stage(substep, start, at_first, extension, contractile, start.velocity, residual);
         let carried = Motion {
             lengthening: start.lengthening + substep.carry_time * first.velocity,
             velocity: start.velocity + substep.carry * (first.velocity - start.velocity),
         };
         let at_end = time + substep.share;
-        self.stage(substep, carried, at_end, extension, contractile, first.velocity)
+        self.stage(substep, carried, at_end, extension, contractile, first.velocity, residual)
     }
 
     /// One implicit stage at `time` from `base`: L = L_b + gamma h V, V = V_b + gamma h dV/dt.
@@ -165,6 +205,7 @@ impl<S: Scalar> Contraction<S> {
         extension: Course<S>,
         contractile: &Contractile<S, N>,
         guess: S,
+        worst: &mut S,
     ) -> Motion<S> {
         let stage = Stage {
             contraction: self,
@@ -178,18 +219,21 @@ impl<S: Scalar> Contraction<S> {
                 + contractile.passive_slope * base.lengthening,
             contractile,
         };
-        let (at_zero, _) = stage.residual(true, S::ZERO);
+        let at_zero = stage.residual(true, S::ZERO).value;
         let lengthening = at_zero < S::ZERO;
         let mut velocity = if (guess > S::ZERO) == lengthening { guess } else { S::ZERO };
-        for _ in 0..NEWTON_STEPS {
-            let (residual, slope) = stage.residual(lengthening, velocity);
-            let next = velocity - residual / slope;
+        let mut last = S::ZERO;
+        for _ in 0..ITERATIONS {
+            let residual = stage.residual(lengthening, velocity);
+            let next = velocity - residual.correction(self.two);
             velocity = if lengthening {
                 next.max(S::ZERO).min(self.speed)
             } else {
                 next.min(S::ZERO).max(-self.speed)
             };
+            last = residual.value.abs();
         }
+        *worst = worst.max(last);
         Motion { lengthening: base.lengthening + substep.gamma_time * velocity, velocity }
     }
 }
@@ -206,30 +250,49 @@ struct Stage<'a, S, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Stage<'_, S, N> {
-    /// The residual (F0) and its slope by V, always positive, on one branch of FV.
-    fn residual(&self, lengthening: bool, velocity: S) -> (S, S) {
+    /// The residual, F0, on one branch of FV.
+    fn residual(&self, lengthening: bool, velocity: S) -> Residual<S> {
         let (c, substep) = (self.contraction, self.substep);
-        let (mut force, mut slope) = (self.passive, S::ZERO);
         let resistance = c.viscosity + self.contractile.passive_slope * substep.gamma_time;
-        force = force + resistance * velocity;
-        if force > self.contractile.passive_floor {
-            slope = resistance;
-        } else {
-            force = self.contractile.passive_floor;
+        let (mut force, mut slope, mut curvature) =
+            (self.passive + resistance * velocity, resistance, S::ZERO);
+        if force < self.contractile.passive_floor {
+            (force, slope) = (self.contractile.passive_floor, S::ZERO);
         }
         for (gain, curve) in self.gains.iter().zip(&self.contractile.curves) {
-            let (value, steepness) = curve.at(lengthening, velocity);
+            let (value, steepness, bend) = curve.at(lengthening, velocity);
             force = force + *gain * value;
             slope = slope + *gain * steepness;
+            curvature = curvature + *gain * bend;
         }
         if force < S::ZERO {
-            (force, slope) = (S::ZERO, S::ZERO);
+            (force, slope, curvature) = (S::ZERO, S::ZERO, S::ZERO);
         }
         let lengthening = self.base.lengthening + substep.gamma_time * velocity;
         let (pull, stiffness) = c.tendon.pull(c.tendon.give(self.extension, lengthening));
-        (
-            substep.inertia * (velocity - self.base.velocity) + force - pull,
-            substep.inertia + slope + stiffness * substep.gamma_time,
-        )
+        Residual {
+            value: substep.inertia * (velocity - self.base.velocity) + force - pull,
+            slope: substep.inertia + slope + stiffness * substep.gamma_time,
+            curvature,
+        }
+    }
+}
+
+/// The residual of a stage's equation and how it goes on with V.
+struct Residual<S> {
+    /// F0.
+    value: S,
+    /// By V; always positive.
+    slope: S,
+    /// Half the second derivative by V, of FV alone: the tendon's toe is too narrow to follow.
+    curvature: S,
+}
+
+impl<S: Scalar> Residual<S> {
+    /// Halley's correction of V: r r'/(r'² - r r''/2), at most twice Newton's.
+    fn correction(&self, two: S) -> S {
+        let square = self.slope * self.slope;
+        let reduced = square - self.value * self.curvature;
+        self.value * self.slope / reduced.max(square / two)
     }
 }

@@ -28,6 +28,9 @@ bitflags::bitflags! {
         const FASCICLE_LENGTH_LIMITED = 1 << 7;
         /// The fascicles were held at the greatest speed the state can have, 60 L_ce0/s.
         const FASCICLE_VELOCITY_LIMITED = 1 << 8;
+        /// The forces on the fascicles were still out of balance by more than 0.25 F0 before the
+        /// last correction of a velocity, as when a path jumps: force is less accurate.
+        const MECHANICS_UNSETTLED = 1 << 9;
     }
 }
 

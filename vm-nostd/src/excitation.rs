@@ -10,26 +10,26 @@ use crate::time_step::TimeStep;
 /// Time constants of excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExcitationParams {
-    /// T_f1, s per L_ce0²; 0.001 to 10.
+    /// T_f1, s per L_ce0²; 0.005 to 0.5.
     #[doc(alias = "Tf1")]
     pub rise: f64,
-    /// T_f2, s per f0.5; 0 to 10.
+    /// T_f2, s per f0.5; 0 to 0.5.
     #[doc(alias = "Tf2")]
     pub rise_per_frequency: f64,
-    /// T_f3, s L_ce0; 0.001 to 10.
+    /// T_f3, s L_ce0; 0.005 to 0.5.
     #[doc(alias = "Tf3")]
     pub fall: f64,
-    /// T_f4, s L_ce0; 0 to 10.
+    /// T_f4, s L_ce0; 0 to 0.5.
     #[doc(alias = "Tf4")]
     pub fall_per_activation: f64,
 }
 
 impl ExcitationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
-        within("excitation.rise", self.rise, 1e-3, 10.0)?;
-        within("excitation.rise_per_frequency", self.rise_per_frequency, 0.0, 10.0)?;
-        within("excitation.fall", self.fall, 1e-3, 10.0)?;
-        within("excitation.fall_per_activation", self.fall_per_activation, 0.0, 10.0)
+        within("excitation.rise", self.rise, 5e-3, 0.5)?;
+        within("excitation.rise_per_frequency", self.rise_per_frequency, 0.0, 0.5)?;
+        within("excitation.fall", self.fall, 5e-3, 0.5)?;
+        within("excitation.fall_per_activation", self.fall_per_activation, 0.0, 0.5)
     }
 }
 
@@ -42,6 +42,7 @@ pub struct Excitation<S> {
     fall: S,
     fall_per_activation: S,
     half: S,
+    two: S,
 }
 
 /// What one tick does to the two lags.
@@ -64,6 +65,7 @@ impl<S: Scalar> Excitation<S> {
             fall: ticks(params.fall),
             fall_per_activation: ticks(params.fall_per_activation),
             half: S::from_f64(0.5),
+            two: S::from_f64(2.0),
         }
     }
 
@@ -93,15 +95,17 @@ impl<S: Scalar> Excitation<S> {
         let crosses = converging && lead.abs() < excess.abs() * before;
         let x = if crosses { after + lead / excess * (S::ONE - after / before) } else { before };
 
+        // In changes, not in values: a slow lag's are far below the values' last bits.
         let x_middle = x * self.half;
-        let decay_middle = (-x_middle).exp();
-        let decay = decay_middle * decay_middle;
+        let done_middle = -(-x_middle).exp_m1();
+        let done = done_middle * (self.two - done_middle);
         let lag = effective - drive;
-        let effective_at = |x: S, decay: S| (drive + (lag + excess * x) * decay).max(S::ZERO);
+        let effective_at =
+            |x: S, done: S| (effective + (excess * x * (S::ONE - done) - lag * done)).max(S::ZERO);
         Excited {
-            intermediate: drive + excess * decay,
-            effective_at_middle: effective_at(x_middle, decay_middle),
-            effective: effective_at(x, decay),
+            intermediate: (intermediate - excess * done).max(S::ZERO),
+            effective_at_middle: effective_at(x_middle, done_middle),
+            effective: effective_at(x, done),
         }
     }
 }

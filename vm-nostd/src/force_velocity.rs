@@ -127,14 +127,18 @@ pub(crate) struct VelocityCurve<S> {
 }
 
 impl<S: Scalar> VelocityCurve<S> {
-    /// FV and its slope (s/L_ce0) on the branch named by `lengthening`, at a velocity of that
-    /// side. Faster than V_max, FV is 0: the paper's own expression would push there.
-    pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S) {
+    /// FV, its slope and half its curvature by V on the branch named by `lengthening`, at a
+    /// velocity of that side. Faster than V_max, FV is 0: the paper's own expression would push.
+    pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S, S) {
         let branch = if lengthening { self.lengthening } else { self.shortening };
         let inside = velocity.max(self.maximum_velocity);
         let reciprocal = S::ONE / (S::ONE + branch.denominator * inside);
         let value = (S::ONE + branch.numerator * inside) * reciprocal;
         let slope = (branch.numerator - branch.denominator) * (reciprocal * reciprocal);
-        (value, if velocity > self.maximum_velocity { slope } else { S::ZERO })
+        if velocity > self.maximum_velocity {
+            (value, slope, -(branch.denominator * slope * reciprocal))
+        } else {
+            (value, S::ZERO, S::ZERO)
+        }
     }
 }

@@ -14,7 +14,7 @@ impl<S: Scalar> Lag<S> {
     /// A lag of `time_constant` s.
     pub(crate) fn new(time_constant: f64, step: TimeStep) -> Self {
         let x = step.seconds() / time_constant;
-        let done = |x: f64| S::from_f64(1.0 - Scalar::exp(-x));
+        let done = |x: f64| S::from_f64(-Scalar::exp_m1(-x));
         Self { half: done(0.5 * x), whole: done(x) }
     }
 

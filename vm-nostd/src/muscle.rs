@@ -1,7 +1,7 @@
 //! A muscle: parameters made into coefficients once, and the tick.
 
 use crate::activation::ActivationFrequency;
-use crate::contraction::{Contractile, Contraction};
+use crate::contraction::{Contractile, Contraction, Motion};
 use crate::domain::{Domain, Status};
 use crate::error::{ParameterError, within};
 use crate::excitation::Excitation;
@@ -103,7 +103,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
         params.validate()?;
         let elements = &params.elements;
-        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { S::ZERO } else { S::from_f64(-1e3) };
+        // Without a floor of its own, the passive force ends where nothing will ever push it.
+        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { 0.0 } else { -1e3 };
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, step),
@@ -111,7 +112,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length()),
             compression: Compression::new(&elements.compression),
             contraction: Contraction::new(params, step),
-            passive_floor: floor,
+            passive_floor: S::from_f64(floor),
             max_isometric_force: S::from_f64(params.max_isometric_force()),
             time_step: S::from_f64(step.seconds()),
             half: S::from_f64(0.5),
@@ -189,9 +190,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
 
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let travel = state.fascicle_velocity * self.time_step;
-        let (middle, outside) = self.domain.filaments.clip(length + travel * self.half);
-        let too_fast = state.fascicle_velocity < self.domain.shortening_velocity;
-        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside || too_fast);
+        let (middle, _) = self.domain.fascicle_length.clip(length + travel * self.half);
 
         let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
         let recruited = self.recruitment.advance(
@@ -210,10 +209,17 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let extension =
             Course { middle: state.tendon_extension + stretch * self.half, change: stretch };
         let end = self.contraction.advance(state.fascicle_velocity, extension, &contractile);
+        status.set(Status::MECHANICS_UNSETTLED, !end.settled);
+        let Motion { lengthening, velocity } = end.motion;
         state.path_length = input.path_length;
-        state.fascicle_velocity = end.velocity;
-        state.tendon_extension = tendon.give(state.tendon_extension + stretch, end.lengthening);
+        state.fascicle_velocity = velocity;
+        state.tendon_extension = tendon.give(state.tendon_extension + stretch, lengthening);
         status |= self.confine(state);
+        // The coefficients were taken at the middle, the state is left at the end.
+        let outside = |length| !self.domain.filaments.contains(length);
+        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let too_fast = state.fascicle_velocity < self.domain.shortening_velocity;
+        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside(middle) || outside(length) || too_fast);
 
         for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
             let target = fiber.yielding.target(state.fascicle_velocity);
@@ -252,8 +258,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         middle: S,
         travel: S,
     ) -> Contractile<S, N> {
-        let reciprocal = S::ONE / middle;
-        let logarithm = middle.ln();
+        let (inside, _) = self.domain.filaments.clip(middle);
+        let reciprocal = S::ONE / inside;
+        let logarithm = inside.ln();
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
         let mut gains = [Course::constant(S::ZERO); N];
@@ -290,7 +297,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
         Contractile {
             gains,
-            curves: self.fibers.map(|fiber| fiber.force_velocity.at(middle)),
+            curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside)),
             passive: Course {
                 middle: parallel + compressed.middle * compression,
                 change: compressed.change * compression,

@@ -169,10 +169,13 @@ fn force_velocity_is_the_papers_on_both_branches() {
                     let steepness = at64(v).1;
                     let by_difference = slope(|v| at64(v).0, v);
                     assert!((steepness - by_difference).abs() < 1e-4 * (1.0 + steepness));
+                    let bend = 2.0 * at64(v).2;
+                    let by_difference = slope(|v| at64(v).1, v);
+                    assert!((bend - by_difference).abs() < 1e-3 * (1.0 + bend.abs()));
                 }
             }
         }
-        let (beyond, steepness) = f64.at(1.0).at(false, p.maximum_velocity - 3.0);
+        let (beyond, steepness, _) = f64.at(1.0).at(false, p.maximum_velocity - 3.0);
         assert!(beyond.abs() < 1e-15 && steepness == 0.0, "{beyond:e}");
     }
     value.assert(2e-6, 1e-13, "FV");

@@ -56,7 +56,7 @@ impl FiberType {
 /// A fibre type and its share of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberParams {
-    /// Share of the physiological cross-sectional area; 1e-6 to 1.
+    /// Share of the physiological cross-sectional area; 0.001 to 1.
     pub fraction: f64,
     /// The type.
     pub fiber_type: FiberType,
@@ -112,6 +112,8 @@ pub struct MuscleParams<const N: usize> {
 const FRACTION_SUM_TOLERANCE: f64 = 1e-6;
 /// L_max that a muscle may have, L_ce0.
 const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
+/// A path must have at least this range, L_ce0.
+const LEAST_PATH_RANGE: f64 = 0.1;
 /// Fascicle lengths outside of which no type is evaluated, L_ce0.
 const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 /// Fields that are refused for what follows from them.
@@ -169,12 +171,6 @@ impl<const N: usize> MuscleParams<N> {
         self.elements.validate()?;
         self.validate_fibers()?;
 
-        let path_at = |maximum: f64| {
-            self.max_path_length + (maximum - self.maximum_fascicle_length()) * self.fascicle_length
-        };
-        let (least, most) = MAXIMUM_FASCICLE_LENGTH;
-        within("max_path_length", self.max_path_length, path_at(least), path_at(most))?;
-
         self.each_fiber(|t| {
             let (least, most) = FASCICLE_DOMAIN;
             let shortest = t.force_velocity.shortest_length(least);
@@ -183,7 +179,15 @@ impl<const N: usize> MuscleParams<N> {
             within(LONGEST_LENGTH, longest, SHORTEST_UPPER_EDGE, most)
         })?;
         let (shortest, longest) = self.fascicle_domain();
-        self.each_fiber(|t| t.force_velocity.validate_monotone(shortest, longest))
+        self.each_fiber(|t| t.force_velocity.validate_monotone(shortest, longest))?;
+
+        let path_at = |maximum: f64| {
+            self.max_path_length + (maximum - self.maximum_fascicle_length()) * self.fascicle_length
+        };
+        let (least, most) = MAXIMUM_FASCICLE_LENGTH;
+        let room = LEAST_PATH_RANGE * self.fascicle_length;
+        let (least, most) = (path_at(least).max(self.path_domain().0 + room), path_at(most));
+        within("max_path_length", self.max_path_length, least, most)
     }
 
     /// Checks every type; the error says which.
@@ -203,7 +207,7 @@ impl<const N: usize> MuscleParams<N> {
         let mut rank_before = 0;
         for (index, fiber) in self.fibers.iter().enumerate() {
             let located = |error| ParameterError { fiber: Some(index), ..error };
-            within("fraction", fiber.fraction, 1e-6, 1.0).map_err(located)?;
+            within("fraction", fiber.fraction, 1e-3, 1.0).map_err(located)?;
             fiber.fiber_type.validate().map_err(located)?;
             let rank = fiber.fiber_type.rank;
             if rank < rank_before {

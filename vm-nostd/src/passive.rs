@@ -7,13 +7,13 @@ use crate::softplus::softplus;
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelParams {
-    /// Stiffness of the stretched element c_1, F0 per L_max; 0.1 to 200.
+    /// Stiffness of the stretched element c_1, F0 per L_max; 1 to 200.
     #[doc(alias = "c1")]
     pub stiffness: f64,
-    /// Width of the toe region k_1, L_max; 0.005 to 0.5.
+    /// Width of the toe region k_1, L_max; 0.01 to 0.3.
     #[doc(alias = "k1")]
     pub toe: f64,
-    /// Length at which it becomes taut L_r1, L_max; 0.5 to 2.
+    /// Length at which it becomes taut L_r1, L_max; 0.8 to 1.5.
     #[doc(alias = "Lr1")]
     pub slack_length: f64,
     /// Viscosity eta, F0 s/L_ce0; 0 to 1.
@@ -37,9 +37,9 @@ pub struct CompressionParams {
 
 impl ParallelParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
-        within("parallel.stiffness", self.stiffness, 0.1, 200.0)?;
-        within("parallel.toe", self.toe, 5e-3, 0.5)?;
-        within("parallel.slack_length", self.slack_length, 0.5, 2.0)?;
+        within("parallel.stiffness", self.stiffness, 1.0, 200.0)?;
+        within("parallel.toe", self.toe, 0.01, 0.3)?;
+        within("parallel.slack_length", self.slack_length, 0.8, 1.5)?;
         within("parallel.viscosity", self.viscosity, 0.0, 1.0)
     }
 

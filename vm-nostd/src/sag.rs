@@ -14,7 +14,7 @@ pub struct SagParams {
     /// Level while firing a_S2; 0.01 to 10.
     #[doc(alias = "aS2")]
     pub firing_level: f64,
-    /// Time constant T_S, s; 0.002 to 100.
+    /// Time constant T_S, s; 0.01 to 10.
     #[doc(alias = "TS")]
     pub time_constant: f64,
 }
@@ -26,7 +26,7 @@ impl SagParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("sag.resting_level", self.resting_level, 0.01, 10.0)?;
         within("sag.firing_level", self.firing_level, 0.01, 10.0)?;
-        within("sag.time_constant", self.time_constant, 2e-3, 100.0)
+        within("sag.time_constant", self.time_constant, 0.01, 10.0)
     }
 }
 

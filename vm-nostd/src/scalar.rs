@@ -47,8 +47,12 @@ pub trait Scalar:
     fn is_finite(self) -> bool;
     /// e to the power of `self`; 0 far below, never an error.
     fn exp(self) -> Self;
+    /// e to the power of `self`, less 1, accurate near 0.
+    fn exp_m1(self) -> Self;
     /// Natural logarithm of a positive number.
     fn ln(self) -> Self;
+    /// Natural logarithm of 1 more than `self`, accurate near 0.
+    fn ln_1p(self) -> Self;
 
     /// The smaller of two ordered values; `other` where `self` is not-a-number.
     #[must_use]

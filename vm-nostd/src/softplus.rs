@@ -7,8 +7,8 @@ use crate::scalar::Scalar;
 /// The slope is the logistic function of `x`, 0..1.
 pub(crate) fn softplus<S: Scalar>(x: S) -> (S, S) {
     let decay = (-x.abs()).exp();
-    let sum = S::ONE + decay;
-    let tail = sum.ln();
-    let share = S::ONE / sum;
+    // Far below 0 the value itself is tiny, and what balances two such forces is their ratio.
+    let tail = decay.ln_1p();
+    let share = S::ONE / (S::ONE + decay);
     if x > S::ZERO { (x + tail, share) } else { (tail, decay * share) }
 }

@@ -26,7 +26,7 @@ pub struct State<S, R, const N: usize> {
 
 /// The part of the state that each fibre type has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FiberState<S> {
+pub struct FiberState<S> {
     /// f_int, f0.5 (intramuscular FES: intermediate recruitment, 0..1).
     pub(crate) intermediate_frequency: S,
     /// f_eff, f0.5 (intramuscular FES: recruitment, 0..1).

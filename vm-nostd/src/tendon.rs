@@ -10,7 +10,7 @@ pub struct TendonParams {
     /// Stiffness of the stretched tendon c_T, F0/L_se0; 1 to 200.
     #[doc(alias = "cT")]
     pub stiffness: f64,
-    /// Width of the toe region k_T, L_se0; 0.0005 to 0.1.
+    /// Width of the toe region k_T, L_se0; 0.001 to 0.05.
     #[doc(alias = "kT")]
     pub toe: f64,
     /// Slack length L_r^T, L_se0; 0.5 to 1.5.
@@ -21,14 +21,15 @@ pub struct TendonParams {
 impl TendonParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("tendon.stiffness", self.stiffness, 1.0, 200.0)?;
-        within("tendon.toe", self.toe, 5e-4, 0.1)?;
+        within("tendon.toe", self.toe, 1e-3, 0.05)?;
         within("tendon.slack_length", self.slack_length, 0.5, 1.5)
     }
 
     /// The tendon length, in L_se0, that carries `force` (F0, more than 0).
     pub(crate) fn length_at(&self, force: f64) -> f64 {
-        let growth = Scalar::exp(force / (self.stiffness * self.toe));
-        self.toe * Scalar::ln(growth - 1.0) + self.slack_length
+        // ln(exp(x) - 1), without overflow.
+        let x = force / (self.stiffness * self.toe);
+        self.toe * (x + Scalar::ln(-Scalar::exp_m1(-x))) + self.slack_length
     }
 }
 

@@ -14,7 +14,8 @@ pub struct YieldParams {
     /// Velocity scale V_Y, L_ce0/s; 0.01 to 100.
     #[doc(alias = "VY")]
     pub velocity: f64,
-    /// Time constant T_Y, s; 0.002 to 100.
+    /// Time constant T_Y, s; 0.05 to 10: faster, yield would couple to the velocity within a
+    /// tick.
     #[doc(alias = "TY")]
     pub time_constant: f64,
 }
@@ -23,7 +24,7 @@ impl YieldParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("yielding.depth", self.depth, 0.0, 0.95)?;
         within("yielding.velocity", self.velocity, 0.01, 100.0)?;
-        within("yielding.time_constant", self.time_constant, 2e-3, 100.0)
+        within("yielding.time_constant", self.time_constant, 0.05, 10.0)
     }
 }
 

@@ -4,7 +4,7 @@ use super::Scalar;
 use super::sealed::Sealed;
 
 macro_rules! float {
-    ($float:ty, $bits:ty, $exp:path, $ln:path) => {
+    ($float:ty, $bits:ty, $exp:path, $exp_m1:path, $ln:path, $ln_1p:path) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
@@ -30,12 +30,18 @@ macro_rules! float {
             fn exp(self) -> Self {
                 $exp(self)
             }
+            fn exp_m1(self) -> Self {
+                $exp_m1(self)
+            }
             fn ln(self) -> Self {
                 $ln(self)
+            }
+            fn ln_1p(self) -> Self {
+                $ln_1p(self)
             }
         }
     };
 }
 
-float!(f32, u32, libm::expf, libm::logf);
-float!(f64, u64, libm::exp, libm::log);
+float!(f32, u32, libm::expf, libm::expm1f, libm::logf, libm::log1pf);
+float!(f64, u64, libm::exp, libm::expm1, libm::log, libm::log1p);
