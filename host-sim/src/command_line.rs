@@ -12,6 +12,7 @@ use crate::verify::{self, Report};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -129,15 +130,31 @@ pub fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("vm: {error}");
+            complain(&error.to_string());
             ExitCode::from(REFUSED)
         }
     }
 }
 
+/// Says something on standard error, if anybody listens.
+fn complain(message: &str) {
+    let _nobody_listens = writeln!(std::io::stderr(), "vm: {message}");
+}
+
+/// Prints on standard output; an error, not a panic, if that is closed or full.
+fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
+    writeln!(std::io::stdout(), "{text}")
+}
+
 fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
     let muscle = muscle_file::read(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
+    for (read, file) in [("--input", &args.input), ("--muscle", &args.muscle)] {
+        if trace::same_file(&args.output, file) {
+            let output = args.output.display();
+            return Err(format!("--output {output}: must be another file than {read}'s").into());
+        }
+    }
     let (shortest, longest) = link::path_domain(&muscle);
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
@@ -167,18 +184,18 @@ fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
 fn verify_all(args: &VerifyArgs) -> Result<bool, Box<dyn Error>> {
     let report = verify::verify()?;
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&report.rows)?);
+        print(&serde_json::to_string_pretty(&report.rows)?)?;
     } else {
-        println!("{}", table(&report));
+        print(&table(&report))?;
     }
     for entry in &report.unused {
-        eprintln!("vm: no row uses the tolerance {entry}");
+        complain(&format!("no row uses the tolerance {entry}"));
     }
     for row in report.rows.iter().filter(|row| !row.pass) {
-        eprintln!("vm: {} {} {}: {}", row.scenario, row.mode, row.arithmetic, row.problem);
+        complain(&format!("{} {} {}: {}", row.scenario, row.mode, row.arithmetic, row.problem));
     }
     if report.passed() && !args.json {
-        println!("{} rows, all within their tolerances", report.rows.len());
+        print(&format!("{} rows, all within their tolerances", report.rows.len()))?;
     }
     Ok(report.passed())
 }
@@ -251,10 +268,10 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
     }
     let differences = golden::differences()?;
     for difference in &differences {
-        eprintln!("vm: {difference}");
+        complain(&format!("{difference}"));
     }
     if differences.is_empty() {
-        println!("all bits are the golden ones");
+        print(&"all bits are the golden ones")?;
     }
     Ok(differences.is_empty())
 }
@@ -267,7 +284,7 @@ fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
     }
     let current = readme::is_current(&report)?;
     if !current {
-        eprintln!("vm: the README's table is not what is measured: cargo vm readme --write");
+        complain("the README's table is not what is measured: cargo vm readme --write");
     }
     Ok(current)
 }

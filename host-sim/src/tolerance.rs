@@ -54,9 +54,5 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
     };
     // Where a tendon rings, as one that snaps taut or is pulled at with a jerk.
     let rings = ["passive", "velocity_kinks"].iter().any(|name| scenario.starts_with(name));
-    if rings {
-        (1.5 * share, Some(0.1 * share))
-    } else {
-        (0.1 * share, None)
-    }
+    if rings { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
 }

@@ -77,6 +77,9 @@ impl InputTrace {
 /// How far a time step may be from the usual one, as a share of it.
 const TIME_TOLERANCE: f64 = 1e-3;
 
+/// Numbers beyond this have no place in a trace, and none in `f32`.
+const LARGEST: f64 = 1e12;
+
 /// Reads a file of inputs.
 pub fn read_inputs(path: &Path) -> Result<InputTrace, TraceError> {
     let text = std::fs::read(path).map_err(|source| file_error(path, source))?;
@@ -174,7 +177,11 @@ pub fn numbers(
         let mut row = Vec::with_capacity(columns.len());
         for (cell, column) in record.iter().zip(columns) {
             match cell.trim().parse::<f64>() {
-                Ok(number) if number.is_finite() => row.push(number),
+                Ok(number) if number.abs() <= LARGEST => row.push(number),
+                Ok(number) if number.is_finite() => {
+                    let problem = format!("{number} is beyond {LARGEST:e}");
+                    return Err(cell_error(path, line, column, problem));
+                }
                 _ => {
                     let problem = format!("\"{cell}\" is not a finite number");
                     return Err(cell_error(path, line, column, problem));
@@ -202,6 +209,12 @@ fn digits(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
+/// A time to the nanosecond, however late it is.
+fn time_digits(time: f64) -> String {
+    let seconds = time.floor();
+    format!("{}", seconds + ((time - seconds) * 1e9).round() / 1e9)
+}
+
 /// Writes an output file in one stroke: it is there whole, or as it was before.
 pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -212,7 +225,7 @@ pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> 
     for row in rows {
         let sample = &row.sample;
         let cells = [
-            digits(row.time),
+            time_digits(row.time),
             digits(sample.force),
             digits(sample.fascicle_length),
             digits(sample.fascicle_velocity),
@@ -226,10 +239,15 @@ pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> 
     write_atomically(path, &bytes)
 }
 
-/// Writes a file beside its place and moves it there.
+/// Writes a file beside its place and moves it there; what is no regular file, such as a pipe, is
+/// written to as it is, and a link is followed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
     let error = |source| file_error(path, source);
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if place.exists() && !place.is_file() {
+        return std::fs::write(&place, bytes).map_err(error);
+    }
+    let folder = place.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
@@ -240,8 +258,13 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
     let mut file = builder.tempfile_in(folder).map_err(error)?;
     file.write_all(bytes).map_err(error)?;
     file.as_file().sync_all().map_err(error)?;
-    file.persist(path).map_err(|e| error(e.error))?;
+    file.persist(&place).map_err(|e| error(e.error))?;
     Ok(())
+}
+
+/// Whether two paths lead to the same file.
+pub fn same_file(one: &Path, other: &Path) -> bool {
+    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
 }
 
 /// What is wrong in a cell of a file.

@@ -182,3 +182,27 @@ fn judge(
         reason: entry.map_or(String::new(), |entry| entry.reason.clone()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a row passes with an error and a tolerance.
+    fn passes(max: f64, tolerance: Option<f64>) -> bool {
+        let key = ["steps", "fes", "f32", "reference"].map(str::to_owned);
+        let entry = |max| Tolerance { max, rms: None, reason: "a reason".to_owned() };
+        let table = tolerance.map(|max| (key.clone(), entry(max))).into_iter().collect();
+        let error = ForceError { max, rms: 0.0, bias: 0.0 };
+        judge(key, error, Default::default(), &table, 266.0).pass
+    }
+
+    #[test]
+    fn a_row_passes_between_half_its_tolerance_and_its_tolerance() {
+        assert!(passes(0.04, Some(0.05)));
+        assert!(!passes(0.051, Some(0.05)), "an error beyond the tolerance");
+        assert!(!passes(0.024, Some(0.05)), "a tolerance looser than twice the error");
+        assert!(!passes(0.11, Some(0.12)), "beyond what is promised, whatever the table says");
+        assert!(!passes(0.04, None), "no entry");
+        assert!(!passes(f64::NAN, Some(0.05)), "not a number");
+    }
+}

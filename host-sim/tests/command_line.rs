@@ -94,7 +94,7 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         ("fraction = 0.4", "fraction = 0.4\nbeta = \"b\"", &["fiber[1].beta", "a number"]),
         ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),
         ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "at least 1"]),
-        ("fraction = 0.4", "fraction = 0.4\nTf1_ms = 0", &["fiber[1].Tf1_ms = 0", "1 and 10000"]),
+        ("fraction = 0.4", "fraction = 0.4\nTf1_ms = 0", &["fiber[1].Tf1_ms = 0", "5 and 500"]),
         ("fraction = 0.4", "fraction = 0.4\ncV0 = -50", &["fiber[1].cV0", "pole"]),
         ("fraction = 0.4", "fraction = 0.4\nnf0 = 0.5\nnf1 = 20", &["fiber[1].nf1", "n_f"]),
         ("fraction = 0.4", "fraction = 0.4\naV0 = 3", &["aV0 + aV1 L", "-1"]),
@@ -120,6 +120,7 @@ fn an_input_file_that_cannot_be_is_refused_by_line_and_column() {
         (&rows("0,0,0.16,0\n0.001,x,0.16,0\n"), &["line 3", "activation", "\"x\""]),
         (&rows("0,0,0.16,0\n0.001,0,nan,0\n"), &["line 3", "path_length_m", "\"nan\""]),
         (&rows("0,0,0.16,0\n0.001,0,0.16,inf\n"), &["line 3", "stim_hz", "\"inf\""]),
+        (&rows("0,0,0.16,0\n0.001,1e300,0.16,0\n"), &["line 3", "activation", "beyond"]),
         (&rows("0,0,0.16,0\n0.001,,0.16,0\n"), &["line 3", "activation", "\"\""]),
         (
             &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.001,0,0.16,0\n"),
@@ -174,6 +175,57 @@ fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
             assert!(line.ends_with(status), "{line}");
         }
     }
+}
+
+#[test]
+fn the_input_is_not_overwritten_and_what_is_no_file_is_not_replaced() {
+    let bench = Bench::new(MUSCLE, &rows(GOOD));
+    let run_to = |output: &Path| {
+        let (muscle, input) = (bench.path("m.toml"), bench.path("in.csv"));
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vm"));
+        command.arg("run").arg("--muscle").arg(muscle).arg("--input").arg(input);
+        command.args(["--mode", "fes", "--arithmetic", "f32", "--output"]).arg(output);
+        command.output().expect("vm runs").status.code()
+    };
+    assert_eq!(run_to(&bench.path("in.csv")), Some(2));
+    assert_eq!(fs::read_to_string(bench.path("in.csv")).expect("the input"), rows(GOOD));
+    assert_eq!(run_to(&bench.path("nowhere/out.csv")), Some(2));
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
+        symlink(bench.path("out.csv"), bench.path("link.csv")).expect("a link");
+        let before = fs::metadata(bench.path("out.csv")).expect("the output").ino();
+        assert_eq!(run_to(&bench.path("link.csv")), Some(0));
+        assert!(fs::symlink_metadata(bench.path("link.csv")).expect("the link").is_symlink());
+        let after = fs::metadata(bench.path("out.csv")).expect("the output");
+        // Replaced in one stroke, not written over: whoever reads the old one reads it whole.
+        assert_ne!(before, after.ino());
+        assert_eq!(run_to(Path::new("/dev/null")), Some(0));
+        assert!(fs::metadata("/dev/null").expect("/dev/null").file_type().is_char_device());
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_closed_output_is_an_error_and_not_a_panic() {
+    let full = || fs::File::options().write(true).open("/dev/full").expect("/dev/full");
+    let status = Command::new(env!("CARGO_BIN_EXE_vm"))
+        .arg("golden")
+        .stdout(full())
+        .stderr(full())
+        .status()
+        .expect("vm runs");
+    assert_eq!(status.code(), Some(2));
+}
+
+#[test]
+fn time_is_written_to_the_nanosecond_however_late() {
+    let input = rows("1700000000,0,0.16,0\n1700000000.001,0,0.16,0\n1700000000.002,0,0.16,0\n");
+    let bench = Bench::new(MUSCLE, &input);
+    assert!(bench.run("continuous", "f32").status.success());
+    let text = fs::read_to_string(bench.path("out.csv")).expect("the output file");
+    let times: Vec<&str> = text.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(times, ["1700000000", "1700000000.001", "1700000000.002"]);
 }
 
 #[test]

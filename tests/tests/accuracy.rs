@@ -37,6 +37,20 @@ fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
 }
 
 #[test]
+fn the_promises_are_those_of_the_project() {
+    let promise = |scenario: &str, arithmetic: &str| {
+        let key = [scenario, "continuous", arithmetic, "reference"].map(str::to_owned);
+        tolerance::promise(&key, 265.909)
+    };
+    assert_eq!(promise("continuous_steps", "f32"), (0.1, None));
+    assert_eq!(promise("activation_10hz@0.5ms", "f32"), (0.05, None));
+    assert_eq!(promise("passive_length_3hz", "f32"), (1.5, Some(0.1)));
+    assert_eq!(promise("passive_length_3hz@0.5ms", "f32"), (0.75, Some(0.05)));
+    let newtons = promise("continuous_steps", "reference").0 * 265.909 / 100.0;
+    assert!((newtons - 0.005).abs() < 1e-12);
+}
+
+#[test]
 fn an_error_of_force_is_seen() {
     let error = ForceError::between(&[1.0, 2.0, 3.0], &[1.0, 2.5, 3.0], 100.0);
     assert_eq!(error.max, 0.5);

@@ -1,12 +1,12 @@
-//! The smallest program that builds a muscle and steps it for ever. A test reads its image: no
-//! panic may be linked into it.
+//! The smallest program that builds muscles, steps them for ever, and saves and restores a state.
+//! A test reads its image: no panic may be linked into it.
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use firmware::{Frame, Inputs, Record, Rig, Scenario};
-use vm_nostd::Input;
+use firmware::{Frame, Inputs, MUSCLE, Record, Rig, Scenario};
+use vm_nostd::{FesMuscle, Input, IntramuscularFes, State, TimeStep};
 
 /// Inputs and results that the optimiser can tell nothing about.
 struct Anything;
@@ -25,7 +25,13 @@ impl Record for Anything {
 
 #[entry]
 fn main() -> ! {
-    if let Ok(mut rig) = Rig::at_rest(black_box(Scenario::RESTING_PATH)) {
+    if let Ok(mut rig) = Rig::at_rest(black_box(Scenario::RESTING_PATH))
+        && let Ok(muscle) = FesMuscle::<f32, 2>::build(&black_box(MUSCLE), TimeStep::MILLISECOND)
+        && let Ok(state) = muscle.rest(black_box(Scenario::RESTING_PATH))
+    {
+        let mut words = [0; State::<f32, IntramuscularFes, 2>::WORDS];
+        words.iter_mut().zip(state.words()).for_each(|(place, word)| *place = word);
+        let _checked = black_box(muscle.restore(black_box(words)));
         loop {
             rig.tick(&mut Anything, &mut Anything);
         }

@@ -1,0 +1,293 @@
+//! Every limit refuses what is beyond it, by name, and every flag is raised by what it names.
+
+use vm_nostd::{
+    ContinuousMuscle, FesMuscle, FiberParams, Input, Limit, MuscleParams, RestoreError, Status,
+    TimeStep, paper_table_1,
+};
+
+type Params = MuscleParams<2>;
+
+const MUSCLE: Params = Params {
+    mass: 97.5e-3,
+    fascicle_length: 0.11,
+    tendon_length: 0.02,
+    max_path_length: 0.184,
+    recruitment_saturation: 0.8,
+    elements: paper_table_1::ELEMENTS,
+    fibers: [
+        FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
+        FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
+    ],
+};
+
+/// A field, its limits as documented, and how to set it. The limits are written out here: a
+/// limit that moves has to be moved twice.
+type Row = (&'static str, f64, f64, fn(&mut Params, f64));
+
+const OF_MUSCLE: &[Row] = &[
+    ("mass", 1e-5, 20.0, |p, x| p.mass = x),
+    ("fascicle_length", 5e-3, 1.0, |p, x| p.fascicle_length = x),
+    ("tendon_length", 1e-3, 2.0, |p, x| p.tendon_length = x),
+    ("recruitment_saturation", 0.01, 1.0, |p, x| p.recruitment_saturation = x),
+    ("tendon.stiffness", 1.0, 200.0, |p, x| p.elements.tendon.stiffness = x),
+    ("tendon.toe", 1e-3, 0.05, |p, x| p.elements.tendon.toe = x),
+    ("tendon.slack_length", 0.5, 1.5, |p, x| p.elements.tendon.slack_length = x),
+    ("parallel.stiffness", 1.0, 200.0, |p, x| p.elements.parallel.stiffness = x),
+    ("parallel.toe", 0.01, 0.3, |p, x| p.elements.parallel.toe = x),
+    ("parallel.slack_length", 0.8, 1.5, |p, x| p.elements.parallel.slack_length = x),
+    ("parallel.viscosity", 0.0, 1.0, |p, x| p.elements.parallel.viscosity = x),
+    ("compression.strength", -1.0, 0.0, |p, x| p.elements.compression.strength = x),
+    ("compression.steepness", -40.0, -1.0, |p, x| p.elements.compression.steepness = x),
+    ("compression.onset_length", 0.4, 1.0, |p, x| p.elements.compression.onset_length = x),
+    ("specific_tension", 1e4, 1e7, |p, x| p.elements.specific_tension = x),
+    ("density", 500.0, 2000.0, |p, x| p.elements.density = x),
+];
+
+/// Of the second, fast type.
+const OF_FIBER: &[Row] = &[
+    ("fraction", 1e-3, 1.0, |p, x| p.fibers[1].fraction = x),
+    ("half_force_frequency", 0.5, 200.0, |p, x| {
+        p.fibers[1].fiber_type.half_force_frequency = x;
+    }),
+    ("minimum_frequency", 0.0, 5.0, |p, x| p.fibers[1].fiber_type.minimum_frequency = x),
+    ("maximum_frequency", 0.5, 10.0, |p, x| p.fibers[1].fiber_type.maximum_frequency = x),
+    ("force_length.width", 0.1, 10.0, |p, x| p.fibers[1].fiber_type.force_length.width = x),
+    ("force_length.skewness", 0.1, 10.0, |p, x| {
+        p.fibers[1].fiber_type.force_length.skewness = x;
+    }),
+    ("force_length.roundness", 1.0, 10.0, |p, x| {
+        p.fibers[1].fiber_type.force_length.roundness = x;
+    }),
+    ("force_velocity.maximum_velocity", -100.0, -0.1, |p, x| {
+        p.fibers[1].fiber_type.force_velocity.maximum_velocity = x;
+    }),
+    ("force_velocity.shortening", -100.0, 100.0, |p, x| {
+        p.fibers[1].fiber_type.force_velocity.shortening[1] = x;
+    }),
+    ("force_velocity.lengthening", -100.0, 100.0, |p, x| {
+        p.fibers[1].fiber_type.force_velocity.lengthening[2] = x;
+    }),
+    ("force_velocity.lengthening_velocity", 0.01, 10.0, |p, x| {
+        p.fibers[1].fiber_type.force_velocity.lengthening_velocity = x;
+    }),
+    ("activation.scale", 0.05, 10.0, |p, x| p.fibers[1].fiber_type.activation.scale = x),
+    ("activation.exponent", 0.5, 10.0, |p, x| p.fibers[1].fiber_type.activation.exponent = x),
+    ("activation.length_dependence", 0.0, 20.0, |p, x| {
+        p.fibers[1].fiber_type.activation.length_dependence = x;
+    }),
+    ("excitation.rise", 5e-3, 0.5, |p, x| p.fibers[1].fiber_type.excitation.rise = x),
+    ("excitation.rise_per_frequency", 0.0, 0.5, |p, x| {
+        p.fibers[1].fiber_type.excitation.rise_per_frequency = x;
+    }),
+    ("excitation.fall", 5e-3, 0.5, |p, x| p.fibers[1].fiber_type.excitation.fall = x),
+    ("excitation.fall_per_activation", 0.0, 0.5, |p, x| {
+        p.fibers[1].fiber_type.excitation.fall_per_activation = x;
+    }),
+    ("sag.resting_level", 0.01, 10.0, |p, x| {
+        p.fibers[1].fiber_type.sag.as_mut().expect("a type that sags").resting_level = x;
+    }),
+    ("sag.firing_level", 0.01, 10.0, |p, x| {
+        p.fibers[1].fiber_type.sag.as_mut().expect("a type that sags").firing_level = x;
+    }),
+    ("sag.time_constant", 0.01, 10.0, |p, x| {
+        p.fibers[1].fiber_type.sag.as_mut().expect("a type that sags").time_constant = x;
+    }),
+];
+
+/// Of the first, slow type.
+const OF_SLOW: &[Row] = &[
+    ("yielding.depth", 0.0, 0.95, |p, x| {
+        p.fibers[0].fiber_type.yielding.as_mut().expect("a type that yields").depth = x;
+    }),
+    ("yielding.velocity", 0.01, 100.0, |p, x| {
+        p.fibers[0].fiber_type.yielding.as_mut().expect("a type that yields").velocity = x;
+    }),
+    ("yielding.time_constant", 0.05, 10.0, |p, x| {
+        p.fibers[0].fiber_type.yielding.as_mut().expect("a type that yields").time_constant = x;
+    }),
+];
+
+#[test]
+fn every_parameter_is_refused_just_beyond_its_limits() {
+    assert_eq!(MUSCLE.validate(), Ok(()));
+    let rows = [(OF_MUSCLE, None), (OF_FIBER, Some(1)), (OF_SLOW, Some(0))];
+    for (rows, fiber) in rows {
+        for &(field, least, most, set) in rows {
+            let beyond = 1e-6 * (least.abs() + most.abs());
+            for value in [least - beyond, most + beyond, f64::INFINITY, f64::NAN] {
+                let mut params = MUSCLE;
+                set(&mut params, value);
+                let error = params.validate().expect_err(field);
+                assert_eq!((error.field, error.fiber), (field, fiber), "{value}: {error}");
+                assert!(error.value == value || value.is_nan(), "{error}");
+                assert_eq!(error.limit, Limit::Within { least, most }, "{field}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_together_is_refused() {
+    let refused = |change: fn(&mut Params)| {
+        let mut params = MUSCLE;
+        change(&mut params);
+        let error = params.validate().expect_err("a muscle that cannot be");
+        (error.field, error.fiber)
+    };
+    assert_eq!(refused(|p| p.fibers[0].fraction = 0.6001), ("fraction", None));
+    assert_eq!(refused(|p| p.fibers[1].fiber_type.rank = 1), ("rank", Some(1)));
+    assert_eq!(refused(|p| p.fibers[0].fiber_type.rank = 0), ("rank", Some(0)));
+    assert_eq!(refused(|p| p.max_path_length = 0.1), ("max_path_length", None));
+    assert_eq!(refused(|p| p.max_path_length = 0.25), ("max_path_length", None));
+    assert_eq!(refused(|p| p.max_path_length = -1.0), ("max_path_length", None));
+    let none = MuscleParams::<0> {
+        mass: MUSCLE.mass,
+        fascicle_length: MUSCLE.fascicle_length,
+        tendon_length: MUSCLE.tendon_length,
+        max_path_length: MUSCLE.max_path_length,
+        recruitment_saturation: MUSCLE.recruitment_saturation,
+        elements: MUSCLE.elements,
+        fibers: [],
+    };
+    assert_eq!(none.validate().expect_err("no type").limit, Limit::AtLeastOneType);
+    for seconds in [0.99e-4, 2.01e-3, f64::NAN] {
+        assert_eq!(TimeStep::from_seconds(seconds).expect_err("a step").field, "time_step");
+    }
+}
+
+#[test]
+fn a_threshold_at_full_activation_leaves_the_state_finite() {
+    let mut params = MUSCLE;
+    params.recruitment_saturation = 1.0;
+    params.fibers[0].fraction = 0.999;
+    params.fibers[1].fraction = 0.001;
+    let muscle = ContinuousMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("valid");
+    let mut state = muscle.rest(0.16).expect("in range");
+    let input = Input { activation: 1.0, path_length: 0.16, stimulation_frequency: 0.0 };
+    for _ in 0..1000 {
+        assert!(muscle.step(&mut state, input).force.is_finite());
+    }
+    assert!(muscle.restore(state.words()).is_ok());
+}
+
+#[test]
+fn the_steepest_activation_does_not_overflow() {
+    // Af is a step in frequency here: its power overflows f32 unless it is held.
+    let mut params = MUSCLE;
+    for fiber in &mut params.fibers {
+        fiber.fiber_type.half_force_frequency = 0.5;
+        fiber.fiber_type.activation.scale = 0.05;
+        fiber.fiber_type.activation.exponent = 10.0;
+        fiber.fiber_type.excitation.rise_per_frequency = 0.0;
+    }
+    let steady = |force_of: &dyn Fn(f64) -> f64| force_of(0.16);
+    let f32 = steady(&|path| {
+        let muscle = FesMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("valid");
+        let mut state = muscle.rest(path as f32).expect("in range");
+        let input =
+            Input { activation: 0.8, path_length: path as f32, stimulation_frequency: 500.0 };
+        (0..600).fold(0.0, |_, _| f64::from(muscle.step(&mut state, input).force))
+    });
+    let f64 = steady(&|path| {
+        let muscle = FesMuscle::<f64, 2>::build(&params, TimeStep::MILLISECOND).expect("valid");
+        let mut state = muscle.rest(path).expect("in range");
+        let input = Input { activation: 0.8, path_length: path, stimulation_frequency: 500.0 };
+        (0..600).fold(0.0, |_, _| muscle.step(&mut state, input).force)
+    });
+    assert!(f64 > 100.0 && (f32 - f64).abs() < 0.05, "{f32} {f64}");
+}
+
+fn muscle() -> ContinuousMuscle<f32, 2> {
+    ContinuousMuscle::build(&MUSCLE, TimeStep::MILLISECOND).expect("the paper's muscle")
+}
+
+#[test]
+fn a_state_that_no_tick_leaves_is_not_restored() {
+    let muscle = muscle();
+    let words: Vec<u32> = muscle.rest(0.16).expect("in range").words().collect();
+    let expected = words.len();
+    let refused = |words: Vec<u32>| muscle.restore(words).expect_err("a state to refuse");
+    assert_eq!(refused(words[..expected - 1].to_vec()), RestoreError::Length { expected });
+    assert_eq!(refused([words.as_slice(), &[0]].concat()), RestoreError::Length { expected });
+    for word in 0..expected {
+        for value in [f32::NAN, f32::INFINITY, -2000.0, 2000.0] {
+            let mut wrong = words.clone();
+            wrong[word] = value.to_bits();
+            assert_eq!(refused(wrong), RestoreError::Value { word }, "{value}");
+        }
+    }
+    assert!(muscle.restore(words).is_ok());
+}
+
+#[test]
+fn a_missing_sensor_counts_as_no_activation_and_no_motion() {
+    let muscle = muscle();
+    let mut state = muscle.rest(0.16).expect("in range");
+    let before = muscle.observe(&state).force;
+    let nothing =
+        Input { activation: f32::NAN, path_length: f32::NAN, stimulation_frequency: f32::NAN };
+    for _ in 0..300 {
+        let output = muscle.step(&mut state, nothing);
+        assert!((output.force - before).abs() < 1e-3, "{} N", output.force);
+        assert_eq!(
+            output.status,
+            Status::ACTIVATION_NOT_FINITE
+                | Status::FREQUENCY_NOT_FINITE
+                | Status::PATH_LENGTH_NOT_FINITE
+        );
+    }
+}
+
+#[test]
+fn flags_of_the_state_are_raised_by_what_they_name() {
+    let muscle = muscle();
+    let (shortest, longest) = muscle.path_length_range();
+    let step = |state: &mut _, activation: f32, path_length: f32| {
+        muscle.step(state, Input { activation, path_length, stimulation_frequency: 0.0 })
+    };
+
+    // A path that jumps by its whole range pulls the fascicles along at full speed.
+    let mut state = muscle.rest(shortest).expect("in range");
+    let jumped = step(&mut state, 0.0, longest);
+    assert!(jumped.status.contains(Status::FASCICLE_VELOCITY_LIMITED), "{jumped:?}");
+    assert!(jumped.status.contains(Status::MECHANICS_UNSETTLED), "{jumped:?}");
+
+    // Fully active, and the path gone at once: with no tendon to hold them the fascicles shorten
+    // as fast as they can, and nothing stops them but the end of their domain.
+    let mut state = muscle.rest(0.17).expect("in range");
+    for _ in 0..300 {
+        assert_eq!(step(&mut state, 1.0, 0.17).status, Status::empty());
+    }
+    let mut flags = Status::empty();
+    for _ in 0..300 {
+        let output = step(&mut state, 1.0, shortest);
+        flags |= output.status;
+        if output.status.contains(Status::FASCICLE_LENGTH_LIMITED) {
+            assert_eq!(output.fascicle_velocity, 0.0);
+        }
+        // Past V_max of the slow type, -7.88 L_ce0/s.
+        if output.fascicle_velocity < -7.88 {
+            assert!(output.status.contains(Status::FASCICLE_OUTSIDE_DOMAIN), "{output:?}");
+        }
+        assert!((0.51..1.7).contains(&output.fascicle_length), "{output:?}");
+    }
+    assert!(flags.contains(Status::FASCICLE_LENGTH_LIMITED), "{flags:?}");
+}
+
+#[test]
+fn fascicles_beyond_the_domain_are_flagged_and_their_passive_force_still_holds() {
+    // Long enough on its longest path for n_f of the slow type to fall below 0.2.
+    let params = Params { max_path_length: 0.218, ..MUSCLE };
+    let muscle =
+        ContinuousMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("a valid muscle");
+    let (_, longest_fascicle) = params.fascicle_domain();
+    let mut state = muscle.rest(0.217).expect("in range");
+    let at_rest = muscle.observe(&state);
+    assert!(f64::from(at_rest.fascicle_length) > longest_fascicle);
+    let input = Input { activation: 0.0, path_length: 0.217, stimulation_frequency: 0.0 };
+    for _ in 0..100 {
+        let output = muscle.step(&mut state, input);
+        assert_eq!(output.status, Status::FASCICLE_OUTSIDE_DOMAIN);
+        assert!((output.force - at_rest.force).abs() < 1e-3, "{output:?} {at_rest:?}");
+    }
+}
