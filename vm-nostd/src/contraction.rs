@@ -43,6 +43,13 @@ pub(crate) struct Motion<S> {
     pub(crate) velocity: S,
 }
 
+/// A motion found by iteration, and the largest residual (F0) that a last iteration met.
+#[derive(Clone, Copy, Debug)]
+struct Solved<S> {
+    motion: Motion<S>,
+    residual: S,
+}
+
 /// What a tick has done to the mechanics.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Advanced<S> {
@@ -162,17 +169,16 @@ impl<S: Scalar> Contraction<S> {
         contractile: &Contractile<S, N>,
     ) -> Advanced<S> {
         let start = Motion { lengthening: S::ZERO, velocity };
-        let mut residual = S::ZERO;
         // Time since the tick's middle, in ticks.
         let mut time = -self.half;
-        let mut motion =
-            self.substep(&self.first, start, time, extension, contractile, &mut residual);
+        let mut all = self.substep(&self.first, start, time, extension, contractile);
         time = time + self.first.share;
         for _ in 0..self.others {
-            motion = self.substep(&self.other, motion, time, extension, contractile, &mut residual);
+            let one = self.substep(&self.other, all.motion, time, extension, contractile);
+            all = Solved { motion: one.motion, residual: all.residual.max(one.residual) };
             time = time + self.other.share;
         }
-        Advanced { motion, settled: residual <= self.residual }
+        Advanced { motion: all.motion, settled: all.residual <= self.residual }
     }
 
     /// One substep from `start` at `time`: two implicit stages, at gamma and at its end.
@@ -183,17 +189,17 @@ impl<S: Scalar> Contraction<S> {
         time: S,
         extension: Course<S>,
         contractile: &Contractile<S, N>,
-        residual: &mut S,
-    ) -> Motion<S> {
+    ) -> Solved<S> {
         let at_first = time + substep.gamma_share;
-        let first =
-            self.stage(substep, start, at_first, extension, contractile, start.velocity, residual);
+        let first = self.stage(substep, start, at_first, extension, contractile, start.velocity);
+        let velocity = first.motion.velocity;
         let carried = Motion {
-            lengthening: start.lengthening + substep.carry_time * first.velocity,
-            velocity: start.velocity + substep.carry * (first.velocity - start.velocity),
+            lengthening: start.lengthening + substep.carry_time * velocity,
+            velocity: start.velocity + substep.carry * (velocity - start.velocity),
         };
         let at_end = time + substep.share;
-        self.stage(substep, carried, at_end, extension, contractile, first.velocity, residual)
+        let last = self.stage(substep, carried, at_end, extension, contractile, velocity);
+        Solved { motion: last.motion, residual: first.residual.max(last.residual) }
     }
 
     /// One implicit stage at `time` from `base`: L = L_b + gamma h V, V = V_b + gamma h dV/dt.
@@ -205,8 +211,7 @@ impl<S: Scalar> Contraction<S> {
         extension: Course<S>,
         contractile: &Contractile<S, N>,
         guess: S,
-        worst: &mut S,
-    ) -> Motion<S> {
+    ) -> Solved<S> {
         let stage = Stage {
             contraction: self,
             substep,
@@ -222,19 +227,19 @@ impl<S: Scalar> Contraction<S> {
         let at_zero = stage.residual(true, S::ZERO).value;
         let lengthening = at_zero < S::ZERO;
         let mut velocity = if (guess > S::ZERO) == lengthening { guess } else { S::ZERO };
-        let mut last = S::ZERO;
+        let mut residual = S::ZERO;
         for _ in 0..ITERATIONS {
-            let residual = stage.residual(lengthening, velocity);
-            let next = velocity - residual.correction(self.two);
+            let found = stage.residual(lengthening, velocity);
+            let next = velocity - found.correction(self.two);
             velocity = if lengthening {
                 next.max(S::ZERO).min(self.speed)
             } else {
                 next.min(S::ZERO).max(-self.speed)
             };
-            last = residual.value.abs();
+            residual = found.value.abs();
         }
-        *worst = worst.max(last);
-        Motion { lengthening: base.lengthening + substep.gamma_time * velocity, velocity }
+        let lengthening = base.lengthening + substep.gamma_time * velocity;
+        Solved { motion: Motion { lengthening, velocity }, residual }
     }
 }
 
