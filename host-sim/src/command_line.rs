@@ -268,7 +268,7 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
     }
     let differences = golden::differences()?;
     for difference in &differences {
-        complain(&format!("{difference}"));
+        complain(difference);
     }
     if differences.is_empty() {
         print(&"all bits are the golden ones")?;
