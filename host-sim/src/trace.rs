@@ -209,10 +209,11 @@ fn digits(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
-/// A time to the nanosecond, however late it is.
+/// A time to the nanosecond, or as near as an f64 of its size can tell.
 fn time_digits(time: f64) -> String {
-    let seconds = time.floor();
-    format!("{}", seconds + ((time - seconds) * 1e9).round() / 1e9)
+    let whole = time.abs().max(1.0).log10().floor() as usize + 1;
+    let text = format!("{time:.*}", 15_usize.saturating_sub(whole).clamp(1, 9));
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Writes an output file in one stroke: it is there whole, or as it was before.

@@ -219,7 +219,7 @@ fn a_closed_output_is_an_error_and_not_a_panic() {
 }
 
 #[test]
-fn time_is_written_to_the_nanosecond_however_late() {
+fn late_times_are_written_as_they_were_read() {
     let input = rows("1700000000,0,0.16,0\n1700000000.001,0,0.16,0\n1700000000.002,0,0.16,0\n");
     let bench = Bench::new(MUSCLE, &input);
     assert!(bench.run("continuous", "f32").status.success());
