@@ -6,7 +6,7 @@ use super::timing::{Core, Setting};
 use super::trace::{TraceError, execute};
 use crate::scenario::Scenario;
 use crate::target::{self, TargetError};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Why a case could not be measured.
@@ -102,79 +102,125 @@ fn encode(scenarios: &[Scenario]) -> Vec<u8> {
     bytes
 }
 
-/// Times every call of the cases' functions in an image.
-fn measure_image(path: &Path, cases: &[Case]) -> Result<Vec<Measured>, BenchError> {
-    let image = Image::read(path)?;
-    let entries: Vec<u32> = cases
-        .iter()
-        .map(|case| Ok(image.function(case.function)?.address))
-        .collect::<Result<_, ImageError>>()?;
-    let decoder = Decoder::new().map_err(|error| BenchError::Decoder(error.to_string()))?;
-    let mut measured: Vec<Measured> = cases
-        .iter()
-        .map(|&case| Measured { case, ticks: Vec::new(), stack_bytes: 0, code_bytes: 0 })
-        .collect();
-    let mut executed: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); cases.len()];
-    let mut decoded: HashMap<u32, Instruction> = HashMap::new();
-    let mut undecodable = None;
-    let mut call: Option<Call> = None;
-    let mut before: Option<u32> = None;
+/// The instructions of an image, each decoded when it is first met.
+struct Decoded<'a> {
+    image: &'a Image,
+    decoder: Decoder,
+    base: u32,
+    /// By half the distance from the base.
+    slots: Vec<Option<Instruction>>,
+    undecodable: Option<u32>,
+}
 
-    execute(path, |address| {
-        if let Some(one) = &mut call {
-            // The instruction before is timed now that it is known where it led.
-            if let Some(instruction) = before.and_then(|address| decoded.get(&address)) {
-                one.instructions += 1;
-                one.stack += instruction.stack_change;
-                for core in &mut one.cores {
-                    core.execute(instruction, address);
-                }
-                let depth = u32::try_from(-one.stack).unwrap_or(0);
-                let all = &mut measured[one.case];
-                all.stack_bytes = all.stack_bytes.max(depth);
-            }
-            if address == one.returns_to {
-                let cycles = [0, 1, 2].map(|setting| one.cores[setting].cycles());
-                let cost = Cost { instructions: one.instructions, cycles };
-                measured[one.case].ticks.push(cost);
-                call = None;
+impl<'a> Decoded<'a> {
+    fn new(image: &'a Image) -> Result<Self, BenchError> {
+        let decoder = Decoder::new().map_err(|error| BenchError::Decoder(error.to_string()))?;
+        let (base, end) = image.code_range();
+        let slots = vec![None; ((end - base) / 2) as usize];
+        Ok(Self { image, decoder, base, slots, undecodable: None })
+    }
+
+    fn slot(&self, address: u32) -> Option<usize> {
+        let slot = (address.checked_sub(self.base)? / 2) as usize;
+        (slot < self.slots.len()).then_some(slot)
+    }
+
+    fn at(&mut self, address: u32) -> Option<&Instruction> {
+        let Some(slot) = self.slot(address) else {
+            self.undecodable = Some(address);
+            return None;
+        };
+        if self.slots[slot].is_none() {
+            self.slots[slot] = self.decoder.decode(self.image.code_at(address), address);
+            if self.slots[slot].is_none() {
+                self.undecodable = Some(address);
             }
         }
-        if call.is_none()
-            && let Some(case) = entries.iter().position(|&entry| entry == address)
-            && let Some(caller) = before
+        self.slots[slot].as_ref()
+    }
+}
+
+/// Follows calls of the cases' functions through a trace.
+struct Follower<'a> {
+    decoded: Decoded<'a>,
+    entries: Vec<u32>,
+    measured: Vec<Measured>,
+    /// Which cases have executed an instruction, a bit each, by slot.
+    executed: Vec<u32>,
+    call: Option<Call>,
+    before: Option<u32>,
+}
+
+impl Follower<'_> {
+    fn see(&mut self, address: u32) {
+        if let (Some(call), Some(before)) = (&mut self.call, self.before) {
+            // The instruction before is timed now that it is known where it led.
+            if let Some(slot) = self.decoded.slot(before) {
+                self.executed[slot] |= 1 << call.case;
+            }
+            if let Some(instruction) = self.decoded.at(before) {
+                call.instructions += 1;
+                call.stack += instruction.stack_change;
+                for core in &mut call.cores {
+                    core.execute(instruction, address);
+                }
+            }
+            let measured = &mut self.measured[call.case];
+            let depth = u32::try_from(-call.stack).unwrap_or(0);
+            measured.stack_bytes = measured.stack_bytes.max(depth);
+            if address == call.returns_to {
+                let cycles = [0, 1, 2].map(|setting| call.cores[setting].cycles());
+                measured.ticks.push(Cost { instructions: call.instructions, cycles });
+                self.call = None;
+            }
+        } else if let Some(case) = self.entries.iter().position(|&entry| entry == address)
+            && let Some(caller) = self.before
+            && let Some(instruction) = self.decoded.at(caller)
         {
-            // A call is a BL, of four bytes; one by register has two.
-            let wide = image.code_at(caller).get(1).is_some_and(|high| high >> 3 >= 0b11101);
-            call = Some(Call {
+            self.call = Some(Call {
                 case,
-                returns_to: caller + if wide { 4 } else { 2 },
+                returns_to: caller + instruction.size,
                 cores: SETTINGS.map(Core::new),
                 instructions: 0,
                 stack: 0,
             });
         }
-        if let Some(one) = &call
-            && executed[one.case].insert(address)
-            && !decoded.contains_key(&address)
-        {
-            match decoder.decode(image.code_at(address), address) {
-                Some(instruction) => drop(decoded.insert(address, instruction)),
-                None => undecodable = Some(address),
-            }
-        }
-        before = Some(address);
-    })?;
-    if let Some(address) = undecodable {
+        self.before = Some(address);
+    }
+}
+
+/// Times every call of the cases' functions in an image.
+fn measure_image(path: &Path, cases: &[Case]) -> Result<Vec<Measured>, BenchError> {
+    let image = Image::read(path)?;
+    let decoded = Decoded::new(&image)?;
+    let mut follower = Follower {
+        entries: cases
+            .iter()
+            .map(|case| Ok(image.function(case.function)?.address))
+            .collect::<Result<_, ImageError>>()?,
+        measured: cases
+            .iter()
+            .map(|&case| Measured { case, ticks: Vec::new(), stack_bytes: 0, code_bytes: 0 })
+            .collect(),
+        executed: vec![0; decoded.slots.len()],
+        decoded,
+        call: None,
+        before: None,
+    };
+    execute(path, |address| follower.see(address))?;
+    if let Some(address) = follower.decoded.undecodable {
         return Err(BenchError::Decode(address));
     }
-    for (all, addresses) in measured.iter_mut().zip(&executed) {
+    let Follower { decoded, mut measured, executed, .. } = follower;
+    for (case, all) in measured.iter_mut().enumerate() {
         if all.ticks.is_empty() {
             return Err(BenchError::NotExecuted(all.case.name));
         }
-        let functions: BTreeSet<(u32, u32)> = addresses
+        let functions: BTreeSet<(u32, u32)> = executed
             .iter()
-            .filter_map(|&address| image.function_at(address))
+            .zip((decoded.base..).step_by(2))
+            .filter(|(cases, _)| *cases & (1 << case) != 0)
+            .filter_map(|(_, address)| image.function_at(address))
             .map(|function| (function.address, function.size))
             .collect();
         all.code_bytes = functions.iter().map(|(_, size)| size).sum();

@@ -113,6 +113,13 @@ impl Image {
         (address < function.address + function.size).then_some(function)
     }
 
+    /// From the first address of a function to the end of the last.
+    pub fn code_range(&self) -> (u32, u32) {
+        let end = |function: &Function| function.address + function.size;
+        let (first, last) = (self.functions.first(), self.functions.iter().map(end).max());
+        (first.map_or(0, |function| function.address), last.unwrap_or(0))
+    }
+
     /// The code at an address: what an instruction may take, or less where a section ends.
     pub fn code_at(&self, address: u32) -> &[u8] {
         self.sections

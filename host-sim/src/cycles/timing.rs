@@ -1,7 +1,7 @@
 //! The timing model of the Cortex-M4F: cycles of each instruction in the order of execution.
 //!
 //! Sources: Arm, Cortex-M4 Technical Reference Manual r0p1, tables 3-1 (instruction set), 7-1
-//! (floating point) and section 3.3.1-3.3.3 (load and store timing). The settings span what the
+//! (floating point) and section 3.3.2 (load and store timing). The settings span what the
 //! manual leaves open: P, the cycles of refilling the pipeline, is 1 to 3 there.
 
 use super::instruction::{Class, Instruction, Registers};
