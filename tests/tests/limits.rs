@@ -1,24 +1,11 @@
 //! Every limit refuses what is beyond it, by name, and every flag is raised by what it names.
 
+use firmware::MUSCLE;
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, FiberParams, Input, Limit, MuscleParams, RestoreError, Status,
-    TimeStep, paper_table_1,
+    ContinuousMuscle, FesMuscle, Input, Limit, MuscleParams, RestoreError, Status, TimeStep,
 };
 
 type Params = MuscleParams<2>;
-
-const MUSCLE: Params = Params {
-    mass: 97.5e-3,
-    fascicle_length: 0.11,
-    tendon_length: 0.02,
-    max_path_length: 0.184,
-    recruitment_saturation: 0.8,
-    elements: paper_table_1::ELEMENTS,
-    fibers: [
-        FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
-        FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
-    ],
-};
 
 /// A field, its limits as documented, and how to set it. The limits are written out here: a
 /// limit that moves has to be moved twice.
