@@ -258,6 +258,25 @@ fn types_may_be_listed_in_any_order_and_overridden_by_name() {
 }
 
 #[test]
+fn a_type_of_the_users_own_needs_no_preset() {
+    // The coefficients of the paper's slow type, one by one.
+    let own = "rank = 2\nf05_pps = 12\nfmin = 0.5\nfmax = 2\nomega = 1.12\nbeta = 2.3\nrho = 1.62\n\
+               Vmax = -7.88\ncV0 = 5.88\ncV1 = 0\naV0 = -4.7\naV1 = 8.41\naV2 = -5.34\nbV = 0.35\n\
+               af = 0.56\nnf0 = 2.1\nnf1 = 5\nTf1_ms = 34.3\nTf2_ms = 22.7\nTf3_ms = 47.0\n\
+               Tf4_ms = 25.2\ncY = 0.35\nVY = 0.1\nTY_ms = 200";
+    let forces = |muscle: &str| {
+        let bench = Bench::new(muscle, &rows(GOOD));
+        let output = bench.run("fes", "f64");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(bench.path("out.csv")).expect("the output file")
+    };
+    assert_eq!(forces(MUSCLE), forces(&muscle("preset = \"paper-table-1/slow\"", own)));
+    let half_a_yield = own.replace("\nVY = 0.1", "");
+    Bench::new(&muscle("preset = \"paper-table-1/slow\"", &half_a_yield), &rows(GOOD))
+        .refused(&["fiber[0].VY", "preset"]);
+}
+
+#[test]
 fn a_plot_shows_force_length_velocity_and_inputs() {
     let bench = Bench::new(MUSCLE, &rows(GOOD));
     assert!(bench.run("continuous", "f32").status.success());
