@@ -5,8 +5,8 @@
 //! 400 Hz. An L-stable, singly diagonally implicit Runge-Kutta pair of stages (gamma = 1 - 1/√2)
 //! is sound in both, with the tendon kept nonlinear. Each stage is one scalar equation in V, its
 //! residual rising with V, so that the residual's sign at V = 0 tells the sign of the root and
-//! with it the branch of FV; Newton steps on that branch need no search and no loop that depends
-//! on the data.
+//! with it the branch of FV. On that branch Halley's iteration, exact for a single hyperbola, needs
+//! no search and no loop that depends on the data.
 
 use crate::domain::MAXIMUM_SPEED;
 use crate::force_velocity::VelocityCurve;
@@ -122,8 +122,8 @@ impl<S: Scalar> Substep<S> {
 
 /// How many substeps cover `rest` (s), for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
 fn ringing_substeps(rest: f64, mass: f64, stiffness: f64) -> u8 {
-    // w² = stiffness/mass and A² = stiffness mass: the loop counts up to (rest w √A/RINGING)⁴,
-    // in squares of squares for want of a square root.
+    // w h √A <= RINGING in its fourth power, which takes no root: w² = stiffness/mass and
+    // A² = stiffness mass.
     let square = |x: f64| x * x;
     let wanted = square(stiffness / mass) * stiffness * mass;
     (1..MOST_SUBSTEPS)

@@ -200,10 +200,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             &input,
             middle,
         );
-        let mut contractile = self.contractile(state, &recruited, middle, travel);
-        // Brought from the middle, where it was taken, to the start.
-        contractile.passive.middle =
-            contractile.passive.middle + contractile.passive_slope * (length - middle);
+        let contractile = self.contractile(state, &recruited, length, middle, travel);
 
         let stretch = tendon.stretch(input.path_length - state.path_length);
         let extension =
@@ -214,12 +211,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         state.path_length = input.path_length;
         state.fascicle_velocity = velocity;
         state.tendon_extension = tendon.give(state.tendon_extension + stretch, lengthening);
-        status |= self.confine(state);
-        // The coefficients were taken at the middle, the state is left at the end.
-        let outside = |length| !self.domain.filaments.contains(length);
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
-        let too_fast = state.fascicle_velocity < self.domain.shortening_velocity;
-        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside(middle) || outside(length) || too_fast);
+        status |= self.confine(state, middle);
 
         for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
             let target = fiber.yielding.target(state.fascicle_velocity);
@@ -230,8 +222,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         Output { status, ..self.observe(state) }
     }
 
-    /// Keeps length and velocity inside what the state can hold, and says what it had to keep.
-    fn confine(&self, state: &mut State<S, R, N>) -> Status {
+    /// Keeps length and velocity inside what the state can hold, and says what it had to keep, and
+    /// whether the filaments' equations held at the tick's `middle` and at its end.
+    fn confine(&self, state: &mut State<S, R, N>, middle: S) -> Status {
         let tendon = &self.contraction.tendon;
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let (length, stopped) = self.domain.fascicle_length.clip(length);
@@ -246,15 +239,20 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status.set(Status::FASCICLE_LENGTH_LIMITED, stopped);
         let held = velocity >= speeds.most || velocity <= speeds.least;
         status.set(Status::FASCICLE_VELOCITY_LIMITED, held);
+        // The coefficients were taken at the middle, the state is left at the end.
+        let outside = |length| !self.domain.filaments.contains(length);
+        let too_fast = velocity < self.domain.shortening_velocity;
+        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside(middle) || outside(length) || too_fast);
         status
     }
 
     /// The contractile element during the tick that starts in `state`, whose fascicles are at
-    /// `middle` half way and travel by `travel` (both L_ce0). Advances sag.
+    /// `start` then, at `middle` half way, and travel by `travel` (all L_ce0). Advances sag.
     fn contractile(
         &self,
         state: &mut State<S, R, N>,
         recruited: &[Recruited<S>; N],
+        start: S,
         middle: S,
         travel: S,
     ) -> Contractile<S, N> {
@@ -295,14 +293,16 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             compressed.change =
                 compressed.change + weight.change * activation + weight.middle * activation_change;
         }
+        let passive_slope = parallel_slope + compressed.middle * compression_slope;
+        let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {
             gains,
             curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside)),
             passive: Course {
-                middle: parallel + compressed.middle * compression,
+                middle: passive_at_middle + passive_slope * (start - middle),
                 change: compressed.change * compression,
             },
-            passive_slope: parallel_slope + compressed.middle * compression_slope,
+            passive_slope,
             passive_floor: self.passive_floor,
         }
     }
