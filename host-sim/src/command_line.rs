@@ -1,6 +1,7 @@
 //! The command line `vm`.
 
-use crate::cycles;
+mod cycles;
+
 use crate::engine::{self, Arithmetic};
 use crate::golden;
 use crate::link;
@@ -37,7 +38,7 @@ enum Command {
     /// Compare the bits of every scenario's state with the golden ones.
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
-    Cycles(CyclesArgs),
+    Cycles(cycles::CyclesArgs),
     /// Compare the README's measured table with what is measured.
     Readme(ReadmeArgs),
 }
@@ -92,16 +93,6 @@ struct GoldenArgs {
 }
 
 #[derive(Debug, Args)]
-struct CyclesArgs {
-    /// Print the rows as a JSON array instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Fail where a budget of data/budgets.toml is exceeded or stale.
-    #[arg(long)]
-    check: bool,
-}
-
-#[derive(Debug, Args)]
 struct ReadmeArgs {
     /// Write what is measured.
     #[arg(long)]
@@ -137,7 +128,7 @@ pub fn main() -> ExitCode {
         Command::Verify(args) => verify_all(&args),
         Command::Plot(args) => draw(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
-        Command::Cycles(args) => count_cycles(&args),
+        Command::Cycles(args) => cycles::run(&args),
         Command::Readme(args) => compare_readme(&args),
     };
     match done {
@@ -275,59 +266,6 @@ fn draw(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn count_cycles(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
-    let rows = cycles::report()?;
-    if args.json {
-        print(&serde_json::to_string_pretty(&rows)?)?;
-    } else {
-        print(&cycles_table(&rows))?;
-    }
-    let failed = || rows.iter().filter(|row| !row.pass);
-    if args.check {
-        failed()
-            .for_each(|row| complain(&format!("{} {}: {}", row.case, row.arithmetic, row.problem)));
-    }
-    Ok(!args.check || failed().count() == 0)
-}
-
-fn cycles_table(rows: &[cycles::Row]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "case",
-        "arithmetic",
-        "ticks",
-        "instructions",
-        "typ mean",
-        "typ max",
-        "pess max",
-        "worst tick",
-        "state B",
-        "code B",
-        "stack B",
-        "max % F0",
-        "budget",
-    ]);
-    for row in rows {
-        table.add_row([
-            row.case.clone(),
-            row.arithmetic.clone(),
-            row.ticks.to_string(),
-            row.instructions_max.to_string(),
-            format!("{:.0}", row.cycles_typ_mean),
-            row.cycles_typ_max.to_string(),
-            row.cycles_pess_max.to_string(),
-            row.worst_tick.to_string(),
-            row.state_bytes.to_string(),
-            row.code_bytes.to_string(),
-            row.stack_bytes.to_string(),
-            format!("{:.4}", row.max_pct_f0),
-            row.budget.to_string(),
-        ]);
-    }
-    table
-}
-
 fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
     if let Some(reason) = &args.reason {
         golden::bless(reason)?;
@@ -344,12 +282,12 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
 }
 
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
-    let report = verify::verify()?;
+    let table = readme::measured(&verify::verify()?);
     if args.write {
-        readme::write(&report)?;
+        readme::MEASURED.write(&table)?;
         return Ok(true);
     }
-    let current = readme::is_current(&report)?;
+    let current = readme::MEASURED.is_current(&table)?;
     if !current {
         complain("the README's table is not what is measured: cargo vm readme --write");
     }

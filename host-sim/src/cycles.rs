@@ -1,19 +1,26 @@
 //! What a tick costs on a Cortex-M4F, in cycles, from the instructions that really execute.
 //!
-//! QEMU runs the image and a plugin streams the address of every instruction; each address is
-//! decoded once, and a timing model of the core adds up cycles. Flash wait states are not in it.
+//! QEMU runs the image and a plugin streams the addresses of executed instructions; each is decoded
+//! once, and a timing model of the core adds up cycles. Flash wait states are not in it.
 
 mod adversarial;
 mod bench;
+mod boot;
+mod breakdown;
+mod case;
+mod estimator;
+mod follow;
 mod image;
 mod instruction;
+mod profile;
 mod report;
 mod timing;
 mod trace;
 
-pub use bench::{BenchError, Case, Cost, Measured, measure};
-pub use image::{Function, Image, ImageError};
-pub use instruction::{Class, Decoder, Instruction};
-pub use report::{Budget, ReportError, Row, report};
-pub use timing::{Core, Setting};
-pub use trace::{TraceError, execute};
+pub use boot::{Argument, ArgumentError, BootError};
+pub use breakdown::{Part, by_class, by_function, hottest};
+pub use estimator::Cost;
+pub use instruction::Instruction;
+pub use profile::{MACHINE, Profile, ProfileError, of_case, of_image};
+pub use report::{CLOCKS, MARGIN, ReportError, Row, Spread, report};
+pub use trace::Tracer;

@@ -1,13 +1,24 @@
-//! The measured table in the README: made here, and compared with what is written there.
+//! The measured tables in the README: made here, and compared with what is written there.
 
+use crate::cycles;
 use crate::scenario::paper_muscle;
 use crate::trace::{TraceError, write_atomically};
 use crate::verify::{Report, Row};
 use std::path::{Path, PathBuf};
 
-/// Lines between which the README's table stands.
-const BEGIN: &str = "<!-- measured: cargo vm readme --write -->";
-const END: &str = "<!-- end of measured -->";
+/// A place in the README that a measured table stands in, between two lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    begin: &'static str,
+    end: &'static str,
+}
+
+/// Where the table of accuracy stands.
+pub const MEASURED: Place =
+    Place { begin: "<!-- measured: cargo vm readme --write -->", end: "<!-- end of measured -->" };
+/// Where the table of costs stands.
+pub const CYCLES: Place =
+    Place { begin: "<!-- cycles: cargo vm cycles --write -->", end: "<!-- end of cycles -->" };
 
 /// Why the README could not be compared or written.
 #[derive(Debug, thiserror::Error)]
@@ -24,8 +35,8 @@ pub enum ReadmeError {
     #[error(transparent)]
     Write(#[from] TraceError),
     /// It has no place for the table.
-    #[error("the README has no lines \"{BEGIN}\" and \"{END}\"")]
-    NoPlace,
+    #[error("the README has no lines \"{}\" and \"{}\"", .0.begin, .0.end)]
+    NoPlace(Place),
 }
 
 /// The table: f32 against the reference, and the reference against the vectors.
@@ -62,17 +73,51 @@ pub fn measured(report: &Report) -> String {
     text
 }
 
-/// Whether the README's table is the one that is measured.
-pub fn is_current(report: &Report) -> Result<bool, ReadmeError> {
-    let text = read()?;
-    Ok(with_table(&text, &measured(report))? == text)
+/// The table: what a tick costs, beside the baselines.
+pub fn cycles(rows: &[cycles::Row]) -> String {
+    let mut text = String::from(
+        "| case | typ mean | typ max | pess max | x model | max % F0 | state B | code B | stack B |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    for row in rows {
+        text.push_str(&format!(
+            "| {} | {:.0} | {} | {} | {} | {} | {} | {} | {} |\n",
+            row.case,
+            row.cycles_typ_mean,
+            row.cycles_typ_max,
+            row.cycles_pess_max,
+            optional(row.ratio.map(|ratio| format!("{ratio:.1}"))),
+            optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
+            row.state_bytes,
+            row.code_bytes,
+            row.stack_bytes,
+        ));
+    }
+    text
 }
 
-/// Writes the measured table into the README.
-pub fn write(report: &Report) -> Result<(), ReadmeError> {
-    let text = with_table(&read()?, &measured(report))?;
-    write_atomically(&path(), text.as_bytes())?;
-    Ok(())
+impl Place {
+    /// Whether a table is the one that stands in the README.
+    pub fn is_current(self, table: &str) -> Result<bool, ReadmeError> {
+        let text = read()?;
+        Ok(self.filled(&text, table)? == text)
+    }
+
+    /// Writes a table into the README.
+    pub fn write(self, table: &str) -> Result<(), ReadmeError> {
+        let text = self.filled(&read()?, table)?;
+        write_atomically(&path(), text.as_bytes())?;
+        Ok(())
+    }
+
+    /// A README's text with a table in this place.
+    fn filled(self, text: &str, table: &str) -> Result<String, ReadmeError> {
+        let Place { begin, end } = self;
+        let (before, rest) = text.split_once(begin).ok_or(ReadmeError::NoPlace(self))?;
+        let (_, after) = rest.split_once(end).ok_or(ReadmeError::NoPlace(self))?;
+        Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
+    }
 }
 
 fn path() -> PathBuf {
@@ -82,10 +127,4 @@ fn path() -> PathBuf {
 fn read() -> Result<String, ReadmeError> {
     let path = path();
     std::fs::read_to_string(&path).map_err(|source| ReadmeError::Read { path, source })
-}
-
-fn with_table(text: &str, table: &str) -> Result<String, ReadmeError> {
-    let (before, rest) = text.split_once(BEGIN).ok_or(ReadmeError::NoPlace)?;
-    let (_, after) = rest.split_once(END).ok_or(ReadmeError::NoPlace)?;
-    Ok(format!("{before}{BEGIN}\n\n{table}\n{END}{after}"))
 }

@@ -8,6 +8,9 @@ pub const TRIPLE: &str = "thumbv7em-none-eabihf";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
+/// The emulator's name of the board: an STM32F405.
+pub const MACHINE: &str = "netduinoplus2";
+
 /// Why the target is not to be had.
 #[derive(Debug, thiserror::Error)]
 pub enum TargetError {
@@ -79,11 +82,11 @@ pub fn build(program: &str, variables: &[(&str, &Path)]) -> Result<PathBuf, Targ
     Ok(folder.join(TRIPLE).join("release").join(program))
 }
 
-/// QEMU as an STM32F405 with nothing connected but semihosting, about to run an image.
-pub fn emulator(image: &Path) -> Command {
+/// QEMU as a machine with nothing connected but semihosting, about to run an image.
+pub fn emulator(machine: &str, image: &Path) -> Command {
     let mut command = Command::new(QEMU);
     command
-        .args(["-M", "netduinoplus2", "-display", "none", "-serial", "null", "-monitor", "none"])
+        .args(["-M", machine, "-display", "none", "-serial", "null", "-monitor", "none"])
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
         .arg(image)
         .stdin(Stdio::null());

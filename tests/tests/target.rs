@@ -31,7 +31,7 @@ fn build(program: &str) -> Result<PathBuf, TargetError> {
 
 /// Runs a program on the emulated chip and returns what it wrote.
 fn emulate(program: &Path) -> Result<Vec<u8>, TargetError> {
-    let mut child = target::emulator(program)
+    let mut child = target::emulator(target::MACHINE, program)
         .stdout(Stdio::piped())
         .spawn()
         .map_err(target::start_error(target::QEMU))?;

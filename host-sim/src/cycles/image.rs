@@ -1,6 +1,6 @@
 //! A program's image: where its functions are, and the code at an address.
 
-use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
 use std::path::{Path, PathBuf};
 
 /// Why an image could not be read.
@@ -75,16 +75,32 @@ impl Image {
         }
         let mut functions: Vec<Function> = file
             .symbols()
-            .filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.size() > 0)
+            // Assembly may leave a function's type out; "$t" and its like mark kinds of content.
+            .filter(|symbol| matches!(symbol.kind(), SymbolKind::Text | SymbolKind::Unknown))
+            .filter(|symbol| {
+                let section = symbol.section_index().and_then(|s| file.section_by_index(s).ok());
+                section.is_some_and(|section| section.kind() == SectionKind::Text)
+            })
             .filter_map(|symbol| {
-                let name = format!("{:#}", rustc_demangle::demangle(symbol.name().ok()?));
+                let name = symbol.name().ok().filter(|name| !name.starts_with('$'))?;
+                let name = format!("{:#}", rustc_demangle::demangle(name));
                 // Bit 0 of a function's address says that its code is Thumb.
                 let address = symbol.address() as u32 & !1;
                 Some(Function { name, address, size: symbol.size() as u32 })
             })
             .collect();
-        functions.sort_by_key(|function| function.address);
+        // Of several at one address, the one that knows its size.
+        functions.sort_by_key(|function| (function.address, function.size == 0));
         functions.dedup_by_key(|function| function.address);
+        for index in 0..functions.len() {
+            // One whose size is not given ends where the next one begins.
+            if functions[index].size == 0 {
+                let next = functions.get(index + 1).map(|next| next.address);
+                let address = functions[index].address;
+                let end = next.unwrap_or_else(|| section_end(&sections, address));
+                functions[index].size = end.saturating_sub(address);
+            }
+        }
         Ok(Self { sections, functions })
     }
 
@@ -113,13 +129,6 @@ impl Image {
         (address < function.address + function.size).then_some(function)
     }
 
-    /// From the first address of a function to the end of the last.
-    pub fn code_range(&self) -> (u32, u32) {
-        let end = |function: &Function| function.address + function.size;
-        let (first, last) = (self.functions.first(), self.functions.iter().map(end).max());
-        (first.map_or(0, |function| function.address), last.unwrap_or(0))
-    }
-
     /// The code at an address: what an instruction may take, or less where a section ends.
     pub fn code_at(&self, address: u32) -> &[u8] {
         self.sections
@@ -130,4 +139,13 @@ impl Image {
             })
             .map_or(&[], |code| &code[..code.len().min(4)])
     }
+}
+
+/// The end of the section that an address is in.
+fn section_end(sections: &[(u32, Vec<u8>)], address: u32) -> u32 {
+    let ends = sections.iter().map(|(start, content)| (*start, start + content.len() as u32));
+    ends.filter(|(start, end)| (*start..*end).contains(&address))
+        .map(|(_, end)| end)
+        .next()
+        .unwrap_or(address)
 }

@@ -49,6 +49,15 @@ pub type Registers = u64;
 const PROGRAM_COUNTER: Registers = 1 << 15;
 const LINK_REGISTER: Registers = 1 << 14;
 
+/// A place in memory, as an instruction names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// Registers that are added up.
+    pub registers: Registers,
+    /// Bytes on top.
+    pub displacement: i32,
+}
+
 /// One instruction at one address.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
@@ -62,6 +71,8 @@ pub struct Instruction {
     pub reads: Registers,
     /// Registers it makes an address from.
     pub addresses: Registers,
+    /// Where it loads from or stores to, if it leaves the address as it was.
+    pub place: Option<Place>,
     /// Registers it writes.
     pub writes: Registers,
     /// Change of the stack pointer, bytes.
@@ -106,6 +117,7 @@ impl Decoder {
         let operands = instruction.op_str().unwrap_or("").to_owned();
 
         let (mut reads, mut writes, mut addresses) = (0, 0, 0);
+        let mut displacement = None;
         for operand in detail.arch_detail().operands() {
             let ArchOperand::ArmOperand(operand) = operand;
             match operand.op_type {
@@ -120,6 +132,7 @@ impl Decoder {
                 }
                 ArmOperandType::Mem(memory) => {
                     addresses |= self.bits(memory.base()) | self.bits(memory.index());
+                    displacement = Some(memory.disp());
                 }
                 _ => {}
             }
@@ -133,6 +146,9 @@ impl Decoder {
             class: classify(&mnemonic, &operands),
             reads,
             addresses,
+            place: displacement
+                .filter(|_| writes & addresses == 0)
+                .map(|displacement| Place { registers: addresses, displacement }),
             writes,
             stack_change: stack_change(&mnemonic, &operands),
             text: format!("{mnemonic} {operands}").trim_end().to_owned(),

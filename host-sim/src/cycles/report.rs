@@ -1,30 +1,22 @@
 //! The table of costs, and the budgets they are held to.
 
-use super::adversarial;
-use super::bench::{BenchError, Case, Measured, measure};
+use super::bench::{BenchError, measure};
+use super::case::{self, CASES, Case, Subject};
+use super::estimator::Cost;
+use super::follow::{Count, Followed};
+use super::trace::Tracer;
 use crate::engine::{self, Arithmetic, RunError};
-use crate::metrics::{ForceError, forces};
 use crate::reference::Mode;
-use crate::scenario::{self, Scenario, paper_muscle};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 const BUDGETS: &str = include_str!("../../data/budgets.toml");
 /// What the timing model may be short of hardware by.
-const MARGIN: f64 = 1.05;
+pub const MARGIN: f64 = 1.05;
 /// A budget of which less than this share is used is stale.
 const USED: f64 = 0.8;
-
-/// The cases that are measured, and what they are.
-const CASES: [(Case, Mode, Arithmetic); 2] = [
-    (
-        Case { name: "continuous", function: "step_continuous_f32" },
-        Mode::Continuous,
-        Arithmetic::F32,
-    ),
-    (Case { name: "fes", function: "step_fes_f32" }, Mode::Fes, Arithmetic::F32),
-];
+/// Core clocks that muscles are counted for, MHz.
+pub const CLOCKS: [u32; 4] = [48, 84, 168, 480];
 
 /// What a case may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -40,12 +32,35 @@ pub struct Budget {
     pub stack_bytes: u32,
 }
 
+/// Cycles of a tick in one setting of the timing model.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// What 99 of 100 ticks do not exceed.
+    pub p99: u64,
+    /// Most.
+    pub max: u64,
+}
+
+impl Spread {
+    /// Of some ticks in a setting, by its index.
+    pub fn of(calls: &[Cost], setting: usize) -> Self {
+        let mut cycles: Vec<u64> = calls.iter().map(|cost| cost.cycles[setting]).collect();
+        cycles.sort_unstable();
+        let Some(&max) = cycles.last() else { return Self::default() };
+        let mean = cycles.iter().sum::<u64>() as f64 / cycles.len() as f64;
+        let p99 = cycles[(cycles.len() * 99).div_ceil(100) - 1];
+        Self { mean, p99, max }
+    }
+}
+
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Name of the case.
     pub case: String,
-    /// Recruitment mode.
+    /// Recruitment mode; `-` where it is no muscle.
     pub mode: String,
     /// What it is computed in.
     pub arithmetic: String,
@@ -55,29 +70,53 @@ pub struct Row {
     pub ticks: usize,
     /// Most instructions of a tick.
     pub instructions_max: u64,
+    /// Mean cycles, optimistic setting.
+    pub cycles_opt_mean: f64,
+    /// Cycles that 99 of 100 ticks do not exceed, optimistic setting.
+    pub cycles_opt_p99: u64,
+    /// Most cycles, optimistic setting.
+    pub cycles_opt_max: u64,
     /// Mean cycles, typical setting.
     pub cycles_typ_mean: f64,
+    /// Cycles that 99 of 100 ticks do not exceed, typical setting.
+    pub cycles_typ_p99: u64,
     /// Most cycles, typical setting.
     pub cycles_typ_max: u64,
+    /// Mean cycles, pessimistic setting.
+    pub cycles_pess_mean: f64,
+    /// Cycles that 99 of 100 ticks do not exceed, pessimistic setting.
+    pub cycles_pess_p99: u64,
     /// Most cycles, pessimistic setting.
     pub cycles_pess_max: u64,
     /// The tick that took most, counted from 0 over all scenarios.
     pub worst_tick: usize,
+    /// The command that replays that tick.
+    pub replay: String,
     /// Bytes of a muscle's state.
     pub state_bytes: u32,
     /// Bytes of code that was executed, whole functions.
     pub code_bytes: u32,
     /// Bytes of stack below the caller's.
     pub stack_bytes: u32,
-    /// Largest error on the same inputs, adversarial ones apart, % of F0.
-    pub max_pct_f0: f64,
-    /// Budget in pessimistic cycles; 0 where there is none.
-    pub budget: u64,
+    /// Largest error on the same inputs, adversarial ones apart, % of F0; none without a force.
+    pub max_pct_f0: Option<f64>,
+    /// Pessimistic maximum over that of the model in `f32` and the same mode; none for the model.
+    pub ratio: Option<f64>,
+    /// Budget in pessimistic cycles; none for what the model is compared with.
+    pub budget: Option<u64>,
     /// Whether all budgets hold and none is stale.
     pub pass: bool,
     /// What is wrong with a row that does not pass.
     #[serde(skip)]
     pub problem: String,
+}
+
+impl Row {
+    /// Muscles that a core of `megahertz` steps at 1 kHz in a `share` of its time, 0..1.
+    pub fn muscles(&self, megahertz: u32, share: f64) -> u64 {
+        let cycles_per_tick = f64::from(megahertz) * 1e3 * share;
+        (cycles_per_tick / (self.cycles_pess_max as f64 * MARGIN)) as u64
+    }
 }
 
 /// Why there is no table.
@@ -94,120 +133,117 @@ pub enum ReportError {
     Budgets(#[from] toml::de::Error),
 }
 
-/// Measures all cases and holds them to their budgets.
-pub fn report() -> Result<Vec<Row>, ReportError> {
+/// Measures all cases and holds the model's to their budgets.
+pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
     let budgets: BTreeMap<String, Budget> = toml::from_str(BUDGETS)?;
-    let paper = paper_muscle();
-    let scenarios: Vec<Scenario> = scenario::all()
-        .into_iter()
-        .filter(|scenario| !scenario.name.contains('@') && scenario.muscle == paper)
-        .collect();
-    let mut inputs = scenarios.clone();
-    inputs.push(adversarial::scenario());
-    let measured = measure(&CASES.map(|(case, ..)| case), &inputs)?;
-    CASES
-        .iter()
-        .zip(&measured)
-        .map(|(&(_, mode, arithmetic), measured)| {
-            let error = largest_error(&scenarios, mode, arithmetic)?;
-            let key = format!("{}-{}", measured.case.name, arithmetic.name());
-            Ok(row(mode, arithmetic, measured, error, budgets.get(&key)))
-        })
-        .collect()
-}
-
-/// Largest error of the force over all scenarios, % of F0.
-fn largest_error(
-    scenarios: &[Scenario],
-    mode: Mode,
-    arithmetic: Arithmetic,
-) -> Result<f64, RunError> {
-    let errors: Vec<f64> = scenarios
-        .par_iter()
-        .map(|scenario| {
-            let run = |arithmetic| {
-                let rows = engine::run(&scenario.muscle, mode, arithmetic, &scenario.trace)?;
-                Ok::<_, RunError>(forces(rows.iter().map(|row| &row.0)))
-            };
-            let (computed, expected) = (run(arithmetic)?, run(Arithmetic::Reference)?);
-            Ok(ForceError::between(&computed, &expected, scenario.muscle.f0()).max)
-        })
-        .collect::<Result<_, RunError>>()?;
-    Ok(errors.into_iter().fold(0.0, f64::max))
-}
-
-fn row(
-    mode: Mode,
-    arithmetic: Arithmetic,
-    measured: &Measured,
-    max_pct_f0: f64,
-    budget: Option<&Budget>,
-) -> Row {
-    let ticks = &measured.ticks;
-    let typical = ticks.iter().map(|cost| cost.cycles[1]);
-    let worst = (0..ticks.len()).max_by_key(|&tick| ticks[tick].cycles[2]).unwrap_or(0);
-    let cycles_pess_max = ticks[worst].cycles[2];
-    let state_bytes = size_of::<vm_nostd::State<f32, vm_nostd::NaturalContinuous, 2>>() as u32;
-    let mut problems = Vec::new();
-    match budget {
-        None => problems.push("no budget".to_owned()),
-        Some(budget) => {
-            let cycles = (cycles_pess_max as f64 * MARGIN).ceil() as u64;
-            let used = [
-                ("cycles", cycles, budget.cycles),
-                ("state_bytes", state_bytes.into(), budget.state_bytes.into()),
-                ("code_bytes", measured.code_bytes.into(), budget.code_bytes.into()),
-                ("stack_bytes", measured.stack_bytes.into(), budget.stack_bytes.into()),
-            ];
-            for (what, used, budget) in used {
-                if used > budget {
-                    problems.push(format!("{what} {used} > budget {budget}"));
-                } else if (used as f64) < USED * budget as f64 {
-                    problems.push(format!("{what} {used} leaves a stale budget of {budget}"));
-                }
-            }
-        }
+    let scenarios = case::scenarios();
+    let (_, followed) = measure(&CASES, &case::runs(), tracer, Count::At(usize::MAX))?;
+    let mut rows = Vec::new();
+    for (case, followed) in CASES.iter().zip(&followed) {
+        let error = case.largest_error(&scenarios)?;
+        rows.push(row(case, followed, error, budgets.get(case.name)));
     }
+    for (index, case) in CASES.iter().enumerate().filter(|(_, case)| !case.is_model()) {
+        rows[index].ratio = cycles_of_model(&rows, case.mode())
+            .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
+    }
+    Ok(rows)
+}
+
+/// What a tick of the model costs in `f32` in a mode, the continuous one if none is named.
+fn cycles_of_model(rows: &[Row], mode: Option<Mode>) -> Option<u64> {
+    let subject = Subject::Model(mode.unwrap_or(Mode::Continuous), Arithmetic::F32);
+    let index = CASES.iter().position(|case| case.subject == subject)?;
+    Some(rows.get(index)?.cycles_pess_max)
+}
+
+fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>, budget: Option<&Budget>) -> Row {
+    let calls = &followed.calls;
+    let [optimistic, typical, pessimistic] = [0, 1, 2].map(|setting| Spread::of(calls, setting));
+    let worst = (0..calls.len()).max_by_key(|&tick| calls[tick].cycles[2]).unwrap_or(0);
+    let problems = problems(case, followed, pessimistic.max, budget);
     Row {
-        case: measured.case.name.to_owned(),
-        mode: engine::mode_name(mode).to_owned(),
-        arithmetic: arithmetic.name().to_owned(),
+        case: case.name.to_owned(),
+        mode: case.mode().map_or("-", engine::mode_name).to_owned(),
+        arithmetic: case.arithmetic().name().to_owned(),
         target: "cortex-m4f".to_owned(),
-        ticks: ticks.len(),
-        instructions_max: ticks.iter().map(|cost| cost.instructions).max().unwrap_or(0),
-        cycles_typ_mean: typical.clone().sum::<u64>() as f64 / ticks.len() as f64,
-        cycles_typ_max: typical.max().unwrap_or(0),
-        cycles_pess_max,
+        ticks: calls.len(),
+        instructions_max: calls.iter().map(|cost| cost.instructions).max().unwrap_or(0),
+        cycles_opt_mean: optimistic.mean,
+        cycles_opt_p99: optimistic.p99,
+        cycles_opt_max: optimistic.max,
+        cycles_typ_mean: typical.mean,
+        cycles_typ_p99: typical.p99,
+        cycles_typ_max: typical.max,
+        cycles_pess_mean: pessimistic.mean,
+        cycles_pess_p99: pessimistic.p99,
+        cycles_pess_max: pessimistic.max,
         worst_tick: worst,
-        state_bytes,
-        code_bytes: measured.code_bytes,
-        stack_bytes: measured.stack_bytes,
+        replay: format!("cargo vm cycles --case {} --tick {worst}", case.name),
+        state_bytes: case.state_bytes(),
+        code_bytes: followed.code_bytes,
+        stack_bytes: followed.stack_bytes,
         max_pct_f0,
-        budget: budget.map_or(0, |budget| budget.cycles),
+        ratio: None,
+        budget: budget.map(|budget| budget.cycles),
         pass: problems.is_empty(),
         problem: problems.join("; "),
     }
 }
 
+/// What is wrong with a case and its budget.
+fn problems(case: &Case, followed: &Followed, cycles: u64, budget: Option<&Budget>) -> Vec<String> {
+    let Some(budget) = budget else {
+        return if case.is_model() { vec!["no budget".to_owned()] } else { Vec::new() };
+    };
+    let cycles = (cycles as f64 * MARGIN).ceil() as u64;
+    let used = [
+        ("cycles", cycles, budget.cycles),
+        ("state_bytes", case.state_bytes().into(), budget.state_bytes.into()),
+        ("code_bytes", followed.code_bytes.into(), budget.code_bytes.into()),
+        ("stack_bytes", followed.stack_bytes.into(), budget.stack_bytes.into()),
+    ];
+    used.into_iter()
+        .filter_map(|(what, used, budget)| {
+            if used > budget {
+                Some(format!("{what} {used} > budget {budget}"))
+            } else if (used as f64) < USED * budget as f64 {
+                Some(format!("{what} {used} leaves a stale budget of {budget}"))
+            } else {
+                None
+            }
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::bench::Cost;
     use super::*;
 
     /// What is wrong with a case whose worst tick takes 1000 pessimistic cycles.
     fn problem(budget: Option<Budget>) -> String {
         let cost = |cycles| Cost { instructions: cycles / 2, cycles: [cycles / 2, cycles, cycles] };
-        let measured = Measured {
-            case: CASES[0].0,
-            ticks: vec![cost(900), cost(1000), cost(800)],
+        let followed = Followed {
+            calls: vec![cost(900), cost(1000), cost(800)],
             stack_bytes: 200,
             code_bytes: 5000,
+            executions: Vec::new(),
         };
-        let row = row(Mode::Continuous, Arithmetic::F32, &measured, 0.1, budget.as_ref());
+        let row = row(&CASES[0], &followed, Some(0.1), budget.as_ref());
         assert_eq!((row.cycles_pess_max, row.worst_tick, row.ticks), (1000, 1, 3));
-        assert_eq!(row.cycles_typ_mean, 900.0);
+        assert_eq!((row.cycles_typ_mean, row.cycles_opt_p99), (900.0, 500));
         assert_eq!(row.pass, row.problem.is_empty());
+        // 84,000 cycles a tick, half of them, and 1050 a muscle.
+        assert_eq!((row.muscles(84, 0.5), row.muscles(1, 1.0)), (40, 0));
         row.problem
+    }
+
+    #[test]
+    fn ninety_nine_of_a_hundred_ticks_do_not_exceed_p99() {
+        let calls: Vec<Cost> =
+            (1..=200).map(|n| Cost { instructions: n, cycles: [n, 2 * n, 3 * n] }).collect();
+        assert_eq!(Spread::of(&calls, 1), Spread { mean: 201.0, p99: 396, max: 400 });
+        assert_eq!(Spread::of(&calls[..1], 0), Spread { mean: 1.0, p99: 1, max: 1 });
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! (floating point) and section 3.3.2 (load and store timing). The settings span what the
 //! manual leaves open: P, the cycles of refilling the pipeline, is 1 to 3 there.
 
-use super::instruction::{Class, Instruction, Registers};
+use super::instruction::{Class, Instruction, Place, Registers};
 
 /// How what the manual leaves open is settled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,82 +40,78 @@ impl Setting {
 /// Cycles of VDIV and VSQRT.
 const FLOAT_DIVIDE: u64 = 14;
 
-/// A core that counts its cycles.
-#[derive(Clone, Debug)]
-pub struct Core {
-    setting: Setting,
-    cycles: u64,
+/// What the instructions before have left in the pipeline: all that the time of the next one
+/// depends on, and no more, so that a run of instructions met again in an equal state need not be
+/// timed again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Pipeline {
     /// Result of the last instruction, if that was one of `Class::Float`.
     float_result: Registers,
     /// Result of the last instruction, if that was integer work.
     integer_result: Registers,
     /// What the last instruction loaded, if it was a single load or store that can be pipelined.
     pipelined: Option<Registers>,
+    /// Where the last instruction stored, if it was a single store.
+    stored: Option<Place>,
     /// The last instruction had 16 bits: an IT behind it is folded into it.
     narrow: bool,
-    /// When the divider is free, and what it will have written.
-    divider_free: u64,
+    /// Cycles until the divider is free, and what it will have written then.
+    divider_busy: u64,
     divider_result: Registers,
     /// The last instruction was a branch that was taken.
     jumped: bool,
 }
 
-impl Core {
-    /// A core that has executed nothing yet.
-    pub fn new(setting: Setting) -> Self {
-        Self {
-            setting,
-            cycles: 0,
-            float_result: 0,
-            integer_result: 0,
-            pipelined: None,
-            narrow: false,
-            divider_free: 0,
-            divider_result: 0,
-            jumped: false,
-        }
-    }
+impl Pipeline {
+    /// Executes an instruction and returns its cycles; `taken`: it was not the following one that
+    /// was executed after it.
+    pub fn execute(&mut self, setting: Setting, instruction: &Instruction, taken: bool) -> u64 {
+        let wait = self.wait(setting, instruction);
+        let duration = self.duration(setting, instruction, taken);
 
-    /// Cycles so far.
-    pub fn cycles(&self) -> u64 {
-        self.cycles
-    }
-
-    /// Executes an instruction; `next` is the address of the one executed after it.
-    pub fn execute(&mut self, instruction: &Instruction, next: u32) {
-        let taken = next != instruction.address.wrapping_add(instruction.size);
-        self.cycles += self.stall(instruction);
-        let issued = self.cycles;
-        self.cycles += self.duration(instruction, taken);
-
-        let float = instruction.class == Class::Float;
-        self.float_result = if float { instruction.writes } else { 0 };
-        let integer = matches!(instruction.class, Class::Integer | Class::MultiplyAccumulate);
-        self.integer_result = if integer { instruction.writes } else { 0 };
-        self.pipelined = instruction
-            .is_single_access()
-            .then_some(if instruction.class == Class::Load { instruction.writes } else { 0 });
-        self.narrow = instruction.size == 2;
-        self.jumped = taken;
+        let (mut busy, mut result) = (self.divider_busy, self.divider_result);
         if instruction.class == Class::FloatDivide {
-            self.divider_free = issued + FLOAT_DIVIDE;
-            self.divider_result = instruction.writes;
+            // It starts when it is issued, not when the wait began.
+            (busy, result) = (wait + FLOAT_DIVIDE, instruction.writes);
         }
+        let divider_busy = busy.saturating_sub(wait + duration);
+        let integer = matches!(instruction.class, Class::Integer | Class::MultiplyAccumulate);
+        let results = |of: bool| if of { instruction.writes } else { 0 };
+        *self = Self {
+            float_result: results(instruction.class == Class::Float),
+            integer_result: results(integer),
+            pipelined: instruction
+                .is_single_access()
+                .then_some(results(instruction.class == Class::Load)),
+            stored: instruction.place.filter(|_| instruction.class == Class::Store),
+            narrow: instruction.size == 2,
+            divider_busy,
+            divider_result: if divider_busy > 0 { result } else { 0 },
+            jumped: taken,
+        };
+        wait + duration
     }
 
     /// Cycles that an instruction waits for those before it.
-    fn stall(&self, instruction: &Instruction) -> u64 {
+    fn wait(&self, setting: Setting, instruction: &Instruction) -> u64 {
         let uses = instruction.reads | instruction.addresses;
         let mut wait = 0;
         if uses & self.float_result != 0 {
             wait += 1;
         }
-        if self.setting != Setting::Optimistic {
+        if setting != Setting::Optimistic {
             if instruction.addresses & self.integer_result != 0 {
                 wait += 1;
             }
             // A 32-bit instruction across two fetches has to be fetched twice.
             if self.jumped && instruction.size == 4 && instruction.address % 4 == 2 {
+                wait += 1;
+            }
+            // A store has to leave the write buffer before its place can be read.
+            if instruction.class == Class::Load
+                && self.stored.is_some()
+                && self.stored == instruction.place
+            {
                 wait += 1;
             }
         }
@@ -128,28 +124,25 @@ impl Core {
                 | Class::FloatDivide
         );
         if needs_divider || (uses | instruction.writes) & self.divider_result != 0 {
-            wait = wait.max(self.divider_free.saturating_sub(self.cycles));
+            wait = wait.max(self.divider_busy);
         }
         wait
     }
 
     /// Cycles that an instruction takes by itself.
-    fn duration(&self, instruction: &Instruction, taken: bool) -> u64 {
-        let refill = self.setting.refill();
-        let pipelined = self.setting != Setting::Pessimistic
+    fn duration(&self, setting: Setting, instruction: &Instruction, taken: bool) -> u64 {
+        let pipelined = setting != Setting::Pessimistic
             && self.pipelined.is_some_and(|loaded| instruction.addresses & loaded == 0);
         let work = match instruction.class {
             Class::Integer | Class::Store | Class::Float | Class::FloatMove => 1,
             Class::MultiplyAccumulate | Class::FloatMoveTwo | Class::StoreByRegister => 2,
-            Class::IntegerDivide => self.setting.divide(),
+            Class::IntegerDivide => setting.divide(),
             Class::Load if pipelined => 1,
             Class::Load => 2,
             Class::LoadMany(words) | Class::StoreMany(words) => 1 + u64::from(words),
-            Class::Branch => 1,
-            Class::Call => 1,
-            Class::BranchToRegister => 1,
+            Class::Branch | Class::Call | Class::BranchToRegister => 1,
             Class::IfThen => {
-                let folded = match self.setting {
+                let folded = match setting {
                     Setting::Optimistic => true,
                     Setting::Typical => self.narrow,
                     Setting::Pessimistic => false,
@@ -158,13 +151,13 @@ impl Core {
             }
             Class::FloatMultiplyAccumulate => 3,
             // The rest of a division runs beside what does not need it.
-            Class::FloatDivide if self.setting != Setting::Pessimistic => 1,
+            Class::FloatDivide if setting != Setting::Pessimistic => 1,
             Class::FloatDivide => FLOAT_DIVIDE,
         };
         let branches =
             matches!(instruction.class, Class::Branch | Class::Call | Class::BranchToRegister)
                 || instruction.writes_program_counter();
-        work + if branches && taken { refill } else { 0 }
+        work + if branches && taken { setting.refill() } else { 0 }
     }
 }
 
@@ -184,18 +177,15 @@ mod tests {
             at += one.size as usize;
             instructions.push(one);
         }
-        let mut core = Core::new(setting);
+        let mut pipeline = Pipeline::default();
+        let mut cycles = 0;
         for pass in 0..passes {
             for (index, one) in instructions.iter().enumerate() {
-                let next = match instructions.get(index + 1) {
-                    Some(next) => next.address,
-                    None if pass + 1 < passes => instructions[0].address,
-                    None => one.address + one.size,
-                };
-                core.execute(one, next);
+                let back = index + 1 == instructions.len() && pass + 1 < passes;
+                cycles += pipeline.execute(setting, one, back);
             }
         }
-        core.cycles()
+        cycles
     }
 
     /// Cycles of one more pass of a loop.
@@ -213,6 +203,13 @@ mod tests {
     const ADDS_ADDRESS: u16 = 0x3104; // adds r1, #4
     const VDIV: [u16; 2] = [0xEE81, 0x0A01]; // vdiv.f32 s0, s2, s2
     const VADD: [u16; 2] = [0xEE31, 0x1A22]; // vadd.f32 s2, s2, s5
+
+    /// Cycles of an instruction that is not followed by the next one.
+    fn taken(setting: Setting, halfwords: &[u16]) -> u64 {
+        let code: Vec<u8> = halfwords.iter().flat_map(|h| h.to_le_bytes()).collect();
+        let one = Decoder::new().expect("a decoder").decode(&code, 0x1000).expect("one");
+        Pipeline::default().execute(setting, &one, true)
+    }
 
     /// `bne` back over some halfwords.
     fn bne_back(halfwords: u16) -> u16 {
@@ -291,5 +288,78 @@ mod tests {
         let udiv = [0xFBB0, 0xF0F1];
         assert_eq!(cycles(Setting::Optimistic, &udiv, 1), 2);
         assert_eq!(cycles(Setting::Pessimistic, &udiv, 1), 12);
+    }
+
+    #[test]
+    fn multiplications_with_accumulation_take_their_time() {
+        assert_eq!(cycles(Setting::Typical, &[0xFB00, 0x2001], 1), 2); // mla
+        assert_eq!(cycles(Setting::Typical, &[0xFBC2, 0x0103], 1), 1); // smlal
+        assert_eq!(cycles(Setting::Typical, &[0xEEA0, 0x0A81], 1), 3); // vfma.f32
+        assert_eq!(cycles(Setting::Typical, &[0xEE00, 0x0A81], 1), 3); // vmla.f32
+    }
+
+    #[test]
+    fn moves_and_comparisons_of_floats_keep_nobody_waiting() {
+        let absolute = [0xEEB0, 0x0AC0]; // vabs.f32 s0, s0
+        assert_eq!(cycles(Setting::Typical, &[absolute, absolute].concat(), 1), 2);
+        let two = [0xEC41, 0x0B10]; // vmov d0, r0, r1
+        assert_eq!(cycles(Setting::Typical, &two, 1), 2);
+        // But for what they read from a result that is not there yet.
+        assert_eq!(cycles(Setting::Typical, &[VMUL_CHAINED, absolute].concat(), 1), 3);
+    }
+
+    #[test]
+    fn stores_by_register_and_pairs_take_longer_than_a_store() {
+        assert_eq!(cycles(Setting::Typical, &[STR], 1), 1);
+        assert_eq!(cycles(Setting::Typical, &[0x5088], 1), 2); // str r0, [r1, r2]
+        assert_eq!(cycles(Setting::Typical, &[0xE9D1, 0x0200], 1), 3); // ldrd r0, r2, [r1]
+        assert_eq!(cycles(Setting::Typical, &[0xE9C1, 0x0200], 1), 3); // strd r0, r2, [r1]
+        // A pair is not pipelined with a load before it.
+        assert_eq!(cycles(Setting::Typical, &[LDR_NEXT, 0xE9D1, 0x0300], 1), 5);
+    }
+
+    #[test]
+    fn loads_of_floats_are_pipelined_like_others() {
+        let load = [0xED91, 0x0A00]; // vldr s0, [r1]
+        let next = [0xEDD1, 0x0A01]; // vldr s1, [r1, #4]
+        assert_eq!(cycles(Setting::Typical, &load, 1), 2);
+        assert_eq!(cycles(Setting::Typical, &[load, next].concat(), 1), 3);
+        assert_eq!(cycles(Setting::Pessimistic, &[load, next].concat(), 1), 4);
+    }
+
+    #[test]
+    fn a_place_that_was_just_stored_to_is_read_a_cycle_later() {
+        let again = 0x680A; // ldr r2, [r1]
+        assert_eq!(cycles(Setting::Typical, &[STR, again], 1), 1 + 1 + 1);
+        assert_eq!(cycles(Setting::Optimistic, &[STR, again], 1), 1 + 1);
+        assert_eq!(cycles(Setting::Typical, &[STR, LDR_NEXT], 1), 1 + 1);
+    }
+
+    #[test]
+    fn calls_and_returns_refill_the_pipeline() {
+        let call = [0xF7FF, 0xFFFE];
+        for (setting, refill) in
+            [(Setting::Optimistic, 1), (Setting::Typical, 2), (Setting::Pessimistic, 3)]
+        {
+            assert_eq!(taken(setting, &call), 1 + refill);
+            assert_eq!(taken(setting, &[0x4770]), 1 + refill); // bx lr
+            assert_eq!(taken(setting, &[0xBD10]), 3 + refill); // pop {r4, pc}
+        }
+    }
+
+    #[test]
+    fn a_wide_instruction_across_two_fetches_is_waited_for_after_a_jump() {
+        let wide_first = [VMUL_CHAINED[0], VMUL_CHAINED[1], SUBS, bne_back(3)];
+        let aligned = per_pass(Setting::Typical, &wide_first);
+        // The same loop two bytes further on.
+        let code: Vec<u8> = wide_first.iter().flat_map(|h| h.to_le_bytes()).collect();
+        let decoder = Decoder::new().expect("a decoder");
+        let wide = decoder.decode(&code, 0x1002).expect("an instruction");
+        let branch = decoder.decode(&code[6..], 0x1008).expect("an instruction");
+        let mut pipeline = Pipeline::default();
+        let first = pipeline.execute(Setting::Typical, &wide, false);
+        pipeline.execute(Setting::Typical, &branch, true);
+        let after_jump = pipeline.execute(Setting::Typical, &wide, false);
+        assert_eq!((first, after_jump, aligned), (1, 2, 5));
     }
 }

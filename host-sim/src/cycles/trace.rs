@@ -1,9 +1,14 @@
 //! The addresses of executed instructions, as QEMU runs an image.
+//!
+//! A plugin sends them over a socket. A QEMU that was built without plugins still writes them to
+//! its log, as text and a hundred times slower.
 
 use crate::target::{self, TargetError};
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Child, Command, Stdio};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// Why a program could not be traced.
@@ -15,30 +20,96 @@ pub enum TraceError {
     /// The plugin could not be built.
     #[error("the trace plugin does not build:\n{0}")]
     Plugin(String),
+    /// QEMU takes no plugin.
+    #[error("QEMU takes no plugin: {0}")]
+    Refused(String),
     /// The trace could not be read.
     #[error("the trace broke off: {0}")]
     Read(#[from] std::io::Error),
+    /// The program went on for too long.
+    #[error("{} is still running after {} s", program.display(), PATIENCE.as_secs())]
+    Endless {
+        /// Which program.
+        program: PathBuf,
+    },
     /// The program failed.
-    #[error("{} ended with {status} after {instructions} instructions: {message}", program.display())]
+    #[error("{} ended with {status} after {blocks} blocks: {message}", program.display())]
     Failed {
         /// Which program.
         program: PathBuf,
         /// How it ended.
         status: std::process::ExitStatus,
         /// How far it came.
-        instructions: u64,
+        blocks: u64,
         /// What QEMU said.
         message: String,
     },
 }
 
+/// How executed addresses are got from QEMU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Tracer {
+    /// By plugin, or by the log where plugins are refused.
+    #[default]
+    Auto,
+    /// By a plugin.
+    Plugin,
+    /// By QEMU's execution log, a hundred times slower.
+    Log,
+}
+
+/// What QEMU is to run.
+#[derive(Clone, Debug)]
+pub struct Program<'a> {
+    /// The image.
+    pub image: &'a Path,
+    /// QEMU's name of the machine.
+    pub machine: &'a str,
+    /// Further arguments.
+    pub arguments: Vec<String>,
+}
+
+impl<'a> Program<'a> {
+    /// An image made for the board of the firmware.
+    pub fn on_board(image: &'a Path) -> Self {
+        Self { image, machine: target::MACHINE, arguments: Vec::new() }
+    }
+}
+
+/// Instructions that were executed one after the other, with no branch among them but the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Block {
+    /// Address of the first.
+    pub first: u32,
+    /// Address of the last.
+    pub last: u32,
+}
+
 /// How long a program may go on for.
 const PATIENCE: Duration = Duration::from_secs(1200);
+/// How long QEMU may take until it has loaded the plugin.
+const START: Duration = Duration::from_secs(60);
+
+/// Runs a program to its end and passes on every executed block.
+pub fn execute(
+    program: &Program<'_>,
+    tracer: Tracer,
+    mut see: impl FnMut(Block),
+) -> Result<(), TraceError> {
+    match tracer {
+        Tracer::Plugin => by_plugin(program, &mut see),
+        Tracer::Log => by_log(program, &mut see),
+        Tracer::Auto => match by_plugin(program, &mut see) {
+            Err(TraceError::Refused(_)) => by_log(program, &mut see),
+            done => done,
+        },
+    }
+}
 
 /// Builds the plugin and returns its library.
 fn plugin() -> Result<PathBuf, TraceError> {
     let folder = target::root().join("target/trace-plugin");
-    let output = std::process::Command::new(option_env!("CARGO").unwrap_or("cargo"))
+    let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
         .args(["build", "--release", "--package", "trace-plugin", "--target-dir"])
         .arg(&folder)
         .current_dir(target::root())
@@ -52,53 +123,174 @@ fn plugin() -> Result<PathBuf, TraceError> {
     Ok(folder.join("release").join(name))
 }
 
-/// Runs an image to its end and passes on the address of every executed instruction; returns how
-/// many there were.
-pub fn execute(image: &Path, mut see: impl FnMut(u32)) -> Result<u64, TraceError> {
+/// A run of QEMU, killed when it is let go of before its end.
+struct Run<'a> {
+    program: &'a Program<'a>,
+    child: Child,
+    started: Instant,
+    blocks: u64,
+}
+
+impl Drop for Run<'_> {
+    fn drop(&mut self) {
+        let _already_gone = self.child.kill();
+        let _already_waited_for = self.child.wait();
+    }
+}
+
+impl<'a> Run<'a> {
+    fn start(program: &'a Program<'a>, arguments: &[&str]) -> Result<Self, TraceError> {
+        let child = target::emulator(program.machine, program.image)
+            .args(&program.arguments)
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(target::start_error(target::QEMU))?;
+        Ok(Self { program, child, started: Instant::now(), blocks: 0 })
+    }
+
+    fn count(&mut self) -> Result<(), TraceError> {
+        self.blocks += 1;
+        // A look at the clock now and then is enough.
+        if self.blocks.is_multiple_of(1 << 20) && self.started.elapsed() > PATIENCE {
+            return Err(TraceError::Endless { program: self.program.image.to_owned() });
+        }
+        Ok(())
+    }
+
+    /// Waits for the end, which must be a success.
+    fn end(mut self, message: impl FnOnce() -> String) -> Result<(), TraceError> {
+        let status = self.child.wait()?;
+        if status.success() {
+            return Ok(());
+        }
+        let program = self.program.image.to_owned();
+        Err(TraceError::Failed { program, status, blocks: self.blocks, message: message() })
+    }
+}
+
+/// Reads what QEMU says while it runs, lest its pipe fill up.
+fn listen(child: &mut Child) -> JoinHandle<String> {
+    let pipe = child.stderr.take();
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut pipe) = pipe {
+            // What was read before an error is still worth showing.
+            let _broken = pipe.read_to_end(&mut bytes);
+        }
+        String::from_utf8_lossy(&bytes).trim().to_owned()
+    })
+}
+
+fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), TraceError> {
     let plugin = plugin()?;
-    // QEMU's standard output is the trace: a pipe needs no file, however long it gets.
-    let mut child = target::emulator(image)
-        .arg("-plugin")
-        .arg(format!("{},out=/dev/stdout", plugin.display()))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(target::start_error(target::QEMU))?;
-    let started = Instant::now();
-    let mut instructions = 0;
-    if let Some(mut pipe) = child.stdout.take() {
-        let mut buffer = vec![0; 1 << 20];
-        let mut held = 0;
-        loop {
-            let read = pipe.read(&mut buffer[held..])?;
-            if read == 0 || started.elapsed() > PATIENCE {
-                break;
+    let folder = tempfile::tempdir()?;
+    let socket = folder.path().join("trace");
+    let listener = UnixListener::bind(&socket)?;
+    listener.set_nonblocking(true)?;
+    let argument = format!("{},socket={}", plugin.display(), socket.display());
+    let mut run = Run::start(program, &["-plugin", &argument])?;
+    let said = listen(&mut run.child);
+    let Some(mut stream) = accept(&listener, &mut run)? else {
+        // It may be running without us.
+        let _already_gone = run.child.kill();
+        return Err(TraceError::Refused(said.join().unwrap_or_default()));
+    };
+    let mut buffer = vec![0; 1 << 20];
+    let mut held = 0;
+    loop {
+        let read = stream.read(&mut buffer[held..])?;
+        if read == 0 {
+            break;
+        }
+        held += read;
+        let blocks = buffer[..held].chunks_exact(8);
+        let rest = blocks.remainder().len();
+        for block in blocks {
+            let address =
+                |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| block[at + byte]));
+            run.count()?;
+            see(Block { first: address(0), last: address(4) });
+        }
+        buffer.copy_within(held - rest..held, 0);
+        held = rest;
+    }
+    run.end(|| said.join().unwrap_or_default())
+}
+
+/// The plugin's connection; `None` if QEMU ends without one.
+fn accept(listener: &UnixListener, run: &mut Run<'_>) -> Result<Option<UnixStream>, TraceError> {
+    loop {
+        match listener.accept() {
+            Ok((stream, _)) => {
+                stream.set_nonblocking(false)?;
+                return Ok(Some(stream));
             }
-            held += read;
-            let words = buffer[..held].chunks_exact(4);
-            let rest = words.remainder().len();
-            for word in words {
-                if let Ok(word) = word.try_into() {
-                    see(u32::from_le_bytes(word));
-                    instructions += 1;
-                }
+            Err(error) if error.kind() != std::io::ErrorKind::WouldBlock => {
+                return Err(error.into());
             }
-            buffer.copy_within(held - rest..held, 0);
-            held = rest;
+            // A run so short that it is over is connected all the same.
+            Err(_) if run.child.try_wait()?.is_some() => match listener.accept() {
+                Ok((stream, _)) => return Ok(Some(stream)),
+                Err(_) => return Ok(None),
+            },
+            Err(_) if run.started.elapsed() > START => return Ok(None),
+            Err(_) => thread::sleep(Duration::from_millis(5)),
         }
     }
-    // Closed or out of patience: either way there is nothing more to come.
-    if started.elapsed() > PATIENCE {
-        child.kill()?;
+}
+
+/// What makes QEMU log every instruction by itself.
+fn log_arguments() -> Result<&'static [&'static str], TraceError> {
+    let output = Command::new(target::QEMU)
+        .arg("--version")
+        .output()
+        .map_err(target::start_error(target::QEMU))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let version = text.split("version ").nth(1).unwrap_or("");
+    let mut numbers = version.split('.').map(|number| number.parse::<u32>().unwrap_or(0));
+    let version = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
+    // The old name was given up for the new one.
+    Ok(if version >= (8, 1) {
+        &["-accel", "tcg,one-insn-per-tb=on", "-d", "exec,nochain"]
+    } else {
+        &["-singlestep", "-d", "exec,nochain"]
+    })
+}
+
+fn by_log(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), TraceError> {
+    let mut run = Run::start(program, log_arguments()?)?;
+    let mut said = String::new();
+    if let Some(pipe) = run.child.stderr.take() {
+        for line in BufReader::new(pipe).lines() {
+            let line = line?;
+            match logged_address(&line) {
+                Some(address) => {
+                    run.count()?;
+                    see(Block { first: address, last: address });
+                }
+                None => said = line,
+            }
+        }
     }
-    let output = child.wait_with_output()?;
-    if !output.status.success() {
-        return Err(TraceError::Failed {
-            program: image.to_owned(),
-            status: output.status,
-            instructions,
-            message: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
-        });
+    run.end(|| said)
+}
+
+/// The address in a line such as `Trace 0: 0x7f1e04 [00000000/08000194/00000110/ff000000] main`.
+fn logged_address(line: &str) -> Option<u32> {
+    let (_, fields) = line.strip_prefix("Trace ")?.split_once('[')?;
+    u32::from_str_radix(fields.split('/').nth(1)?, 16).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_read_from_the_log() {
+        let line = "Trace 0: 0x7ff1fc000100 [00000000/08000194/00000110/ff000200] reset";
+        assert_eq!(logged_address(line), Some(0x0800_0194));
+        assert_eq!(logged_address("qemu-system-arm: no such file"), None);
     }
-    Ok(instructions)
 }

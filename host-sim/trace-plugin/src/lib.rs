@@ -1,13 +1,14 @@
-//! A QEMU plugin that writes the address of every executed instruction, as little-endian 32-bit
-//! words, to the file or FIFO named by its argument `out=PATH`.
+//! A QEMU plugin that writes what is executed to the Unix socket named by its argument
+//! `socket=PATH`: per block of instructions without a branch inside, the addresses of the first and
+//! of the last, as little-endian 32-bit words.
 //!
 //! The prototypes are those of QEMU's plugin interface, version 1 (QEMU 4.2 and later; headers
 //! are not needed). All state is in one writer behind a lock: an emulated microcontroller has a
 //! single core, so the lock is never contended.
 
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
-use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::os::unix::net::UnixStream;
 use std::sync::Mutex;
 
 /// The interface version that QEMU checks before it calls anything.
@@ -35,8 +36,8 @@ unsafe extern "C" {
     fn qemu_plugin_tb_n_insns(block: *const Block) -> usize;
     fn qemu_plugin_tb_get_insn(block: *const Block, index: usize) -> *mut Instruction;
     fn qemu_plugin_insn_vaddr(instruction: *const Instruction) -> u64;
-    fn qemu_plugin_register_vcpu_insn_exec_cb(
-        instruction: *mut Instruction,
+    fn qemu_plugin_register_vcpu_tb_exec_cb(
+        block: *mut Block,
         callback: extern "C" fn(c_uint, *mut c_void),
         flags: c_int,
         data: *mut c_void,
@@ -44,7 +45,7 @@ unsafe extern "C" {
 }
 
 /// Where addresses go.
-static OUTLET: Mutex<Option<BufWriter<File>>> = Mutex::new(None);
+static OUTLET: Mutex<Option<BufWriter<UnixStream>>> = Mutex::new(None);
 
 /// Called by QEMU when it loads the plugin; anything but 0 refuses.
 ///
@@ -60,21 +61,21 @@ pub unsafe extern "C" fn qemu_plugin_install(
     let path = (0..usize::try_from(count).unwrap_or(0)).find_map(|index| {
         // SAFETY: index < count, and QEMU's strings end with a zero.
         let argument = unsafe { CStr::from_ptr(*arguments.add(index)) };
-        argument.to_str().ok()?.strip_prefix("out=").map(str::to_owned)
+        argument.to_str().ok()?.strip_prefix("socket=").map(str::to_owned)
     });
     let Some(path) = path else {
-        eprintln!("trace-plugin: needs out=PATH");
+        eprintln!("trace-plugin: needs socket=PATH");
         return 1;
     };
-    let file = match File::options().write(true).create(true).truncate(true).open(&path) {
-        Ok(file) => file,
+    let socket = match UnixStream::connect(&path) {
+        Ok(socket) => socket,
         Err(error) => {
             eprintln!("trace-plugin: {path}: {error}");
             return 1;
         }
     };
     if let Ok(mut outlet) = OUTLET.lock() {
-        *outlet = Some(BufWriter::with_capacity(1 << 16, file));
+        *outlet = Some(BufWriter::with_capacity(1 << 16, socket));
     }
     // SAFETY: `id` is the one QEMU gave; the callbacks live as long as the library.
     unsafe {
@@ -84,30 +85,29 @@ pub unsafe extern "C" fn qemu_plugin_install(
     0
 }
 
-/// Asks for a call at every instruction of a block that QEMU has just translated.
+/// Asks for a call whenever a block that QEMU has just translated is entered. Blocks end where the
+/// program may branch, and once entered run to their end.
 extern "C" fn on_translation(_id: PluginId, block: *mut Block) {
-    // SAFETY: `block` and the instructions got from it are valid during this call.
+    // SAFETY: `block` and the instructions got from it are valid during this call, and a block
+    // has at least one instruction.
     unsafe {
-        for index in 0..qemu_plugin_tb_n_insns(block) {
-            let instruction = qemu_plugin_tb_get_insn(block, index);
-            // The address travels as the callback's data: no allocation, nothing to free.
-            let address = qemu_plugin_insn_vaddr(instruction) as usize as *mut c_void;
-            qemu_plugin_register_vcpu_insn_exec_cb(
-                instruction,
-                on_execution,
-                NO_REGISTERS,
-                address,
-            );
-        }
+        let address = |index| qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(block, index));
+        let count = qemu_plugin_tb_n_insns(block);
+        let (first, last) = (address(0), address(count - 1));
+        // Both addresses travel as the callback's data: no allocation, nothing to free.
+        let data = (first | last << 32) as usize as *mut c_void;
+        qemu_plugin_register_vcpu_tb_exec_cb(block, on_execution, NO_REGISTERS, data);
     }
 }
 
-/// Writes the address of an executed instruction.
-extern "C" fn on_execution(_core: c_uint, address: *mut c_void) {
-    let word = (address as usize as u32).to_le_bytes();
+const _: () = assert!(size_of::<usize>() == 8, "the callback's data holds two addresses");
+
+/// Writes the addresses of a block that is entered.
+extern "C" fn on_execution(_core: c_uint, addresses: *mut c_void) {
+    let words = (addresses as u64).to_le_bytes();
     if let Ok(mut outlet) = OUTLET.lock()
         && let Some(writer) = outlet.as_mut()
-        && writer.write_all(&word).is_err()
+        && writer.write_all(&words).is_err()
     {
         // The reader is gone: there is nobody to write to, or to tell.
         *outlet = None;

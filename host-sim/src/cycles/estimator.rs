@@ -1,0 +1,231 @@
+//! Adds up cycles over executed blocks.
+//!
+//! What a block costs depends on its instructions, on what the pipelines were left with before it
+//! and on whether its last branch is taken. Each such passage is timed instruction by instruction
+//! when it is first met, and looked up from then on.
+
+use super::image::Image;
+use super::instruction::{Decoder, Instruction};
+use super::timing::{Pipeline, Setting};
+use super::trace::Block;
+use rustc_hash::FxHashMap;
+
+/// The settings, in the order of [`Cost::cycles`].
+pub const SETTINGS: [Setting; 3] = [Setting::Optimistic, Setting::Typical, Setting::Pessimistic];
+
+/// A pipeline in each setting.
+type Pipelines = [Pipeline; 3];
+
+/// Cost of one call.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Instructions.
+    pub instructions: u64,
+    /// Cycles in the optimistic, typical and pessimistic setting.
+    pub cycles: [u64; 3],
+}
+
+impl Cost {
+    /// Adds another cost.
+    pub fn add(&mut self, other: &Cost) {
+        self.add_times(other, 1);
+    }
+
+    /// Adds another cost several times.
+    pub fn add_times(&mut self, other: &Cost, times: u64) {
+        self.instructions += other.instructions * times;
+        for (sum, cycles) in self.cycles.iter_mut().zip(other.cycles) {
+            *sum += cycles * times;
+        }
+    }
+}
+
+/// The instructions of an image, each decoded when it is first met.
+pub struct Decoded<'a> {
+    image: &'a Image,
+    decoder: Decoder,
+    instructions: FxHashMap<u32, Instruction>,
+}
+
+impl<'a> Decoded<'a> {
+    /// Nothing decoded yet.
+    pub fn new(image: &'a Image) -> Result<Self, capstone::Error> {
+        Ok(Self { image, decoder: Decoder::new()?, instructions: FxHashMap::default() })
+    }
+
+    /// The instruction at an address, or the address if there is none.
+    pub fn at(&mut self, address: u32) -> Result<&Instruction, u32> {
+        use std::collections::hash_map::Entry;
+        match self.instructions.entry(address) {
+            Entry::Occupied(known) => Ok(known.into_mut()),
+            Entry::Vacant(new) => {
+                let code = self.image.code_at(address);
+                Ok(new.insert(self.decoder.decode(code, address).ok_or(address)?))
+            }
+        }
+    }
+
+    /// The instructions of a block.
+    pub fn block(&mut self, block: Block) -> Result<Vec<Instruction>, u32> {
+        let mut instructions = Vec::new();
+        let mut address = block.first;
+        while address <= block.last {
+            let instruction = self.at(address)?;
+            address += instruction.size;
+            instructions.push(instruction.clone());
+        }
+        Ok(instructions)
+    }
+}
+
+/// What tells one passage through a block from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Passage {
+    block: Block,
+    /// Number of the state that the pipelines are in before.
+    before: u32,
+    /// Whether its last instruction branches.
+    taken: bool,
+}
+
+/// What is known of a passage.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    cost: Cost,
+    /// Number of the state that the pipelines are in after.
+    after: u32,
+    /// Change of the stack pointer, and the lowest that it gets on the way, bytes.
+    stack: i32,
+    lowest: i32,
+    /// How often it was met while counting.
+    times: u64,
+}
+
+/// Times calls of one function.
+#[derive(Default)]
+pub struct Estimator {
+    states: Vec<Pipelines>,
+    numbers: FxHashMap<Pipelines, u32>,
+    passages: FxHashMap<Passage, Known>,
+    /// State that the pipelines are in.
+    current: u32,
+    cost: Cost,
+    stack: i32,
+    /// Deepest stack so far, bytes.
+    deepest: i32,
+    /// Whether passages are counted.
+    counting: bool,
+}
+
+impl Estimator {
+    /// Begins a call; `counting`: its instructions go into [`Estimator::executions`].
+    pub fn begin(&mut self, counting: bool) {
+        self.current = number(&mut self.states, &mut self.numbers, Pipelines::default());
+        self.cost = Cost::default();
+        self.stack = 0;
+        self.counting = counting;
+    }
+
+    /// Passes through a block; `next` is where the one after it begins. An address at which there
+    /// is no instruction is returned as an error.
+    pub fn pass(&mut self, block: Block, next: u32, decoded: &mut Decoded<'_>) -> Result<(), u32> {
+        let last = decoded.at(block.last)?;
+        let taken = next != block.last.wrapping_add(last.size);
+        let passage = Passage { block, before: self.current, taken };
+        let known = match self.passages.get_mut(&passage) {
+            Some(known) => known,
+            None => {
+                let known = self.time(passage, decoded)?;
+                self.passages.entry(passage).or_insert(known)
+            }
+        };
+        known.times += u64::from(self.counting);
+        self.cost.add(&known.cost);
+        self.deepest = self.deepest.max(-(self.stack + known.lowest));
+        self.stack += known.stack;
+        self.current = known.after;
+        Ok(())
+    }
+
+    /// Ends a call and returns what it cost.
+    pub fn end(&mut self) -> Cost {
+        self.cost
+    }
+
+    /// Deepest stack of all calls, below their caller's, bytes.
+    pub fn stack_bytes(&self) -> u32 {
+        u32::try_from(self.deepest).unwrap_or(0)
+    }
+
+    /// Every block that was passed through, counted or not.
+    pub fn blocks(&self) -> impl Iterator<Item = Block> {
+        self.passages.keys().map(|passage| passage.block)
+    }
+
+    /// Times a passage instruction by instruction.
+    fn time(&mut self, passage: Passage, decoded: &mut Decoded<'_>) -> Result<Known, u32> {
+        let mut pipelines = self.states[passage.before as usize];
+        let mut cost = Cost::default();
+        let (mut stack, mut lowest) = (0, 0);
+        for (instruction, one) in costs(passage, &mut pipelines, decoded)? {
+            cost.add(&one);
+            stack += instruction.stack_change;
+            lowest = lowest.min(stack);
+        }
+        let after = number(&mut self.states, &mut self.numbers, pipelines);
+        Ok(Known { cost, after, stack, lowest, times: 0 })
+    }
+
+    /// Every counted instruction: how often it was executed and what it cost in all.
+    pub fn executions(
+        &self,
+        decoded: &mut Decoded<'_>,
+    ) -> Result<Vec<(Instruction, u64, Cost)>, u32> {
+        let mut sums: FxHashMap<u32, (Instruction, u64, Cost)> = FxHashMap::default();
+        for (&passage, known) in self.passages.iter().filter(|(_, known)| known.times > 0) {
+            let mut pipelines = self.states[passage.before as usize];
+            for (instruction, one) in costs(passage, &mut pipelines, decoded)? {
+                let address = instruction.address;
+                let sum = sums.entry(address).or_insert((instruction, 0, Cost::default()));
+                sum.1 += known.times;
+                sum.2.add_times(&one, known.times);
+            }
+        }
+        let mut all: Vec<_> = sums.into_values().collect();
+        all.sort_by_key(|(instruction, ..)| instruction.address);
+        Ok(all)
+    }
+}
+
+/// What each instruction of a passage costs.
+fn costs(
+    passage: Passage,
+    pipelines: &mut Pipelines,
+    decoded: &mut Decoded<'_>,
+) -> Result<Vec<(Instruction, Cost)>, u32> {
+    let instructions = decoded.block(passage.block)?;
+    Ok(instructions
+        .into_iter()
+        .map(|instruction| {
+            let taken = passage.taken && instruction.address == passage.block.last;
+            let mut cycles = [0; 3];
+            for ((pipeline, setting), cycles) in pipelines.iter_mut().zip(SETTINGS).zip(&mut cycles)
+            {
+                *cycles = pipeline.execute(setting, &instruction, taken);
+            }
+            (instruction, Cost { instructions: 1, cycles })
+        })
+        .collect())
+}
+
+/// The number of a state, a new one if it was not met before.
+fn number(
+    states: &mut Vec<Pipelines>,
+    numbers: &mut FxHashMap<Pipelines, u32>,
+    state: Pipelines,
+) -> u32 {
+    *numbers.entry(state).or_insert_with(|| {
+        states.push(state);
+        (states.len() - 1) as u32
+    })
+}

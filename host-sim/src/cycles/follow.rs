@@ -1,0 +1,146 @@
+//! Follows the calls of some functions through the execution of an image.
+
+use super::estimator::{Cost, Decoded, Estimator};
+use super::image::{Image, ImageError};
+use super::instruction::Instruction;
+use super::trace::{Block, Program, TraceError, Tracer, execute};
+use std::collections::BTreeSet;
+
+/// Why nothing was measured.
+#[derive(Debug, thiserror::Error)]
+pub enum FollowError {
+    /// The trace failed.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// The image is not what it should be.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// The decoder could not be set up.
+    #[error("the disassembler: {0}")]
+    Decoder(#[from] capstone::Error),
+    /// An instruction could not be decoded.
+    #[error("no instruction of a Cortex-M4F at {0:#010x}")]
+    Decode(u32),
+    /// A function was not called.
+    #[error("{0} was not called, or did not return")]
+    NotCalled(String),
+}
+
+/// What was seen of a function.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    /// Cost of each call, from its first instruction to its return.
+    pub calls: Vec<Cost>,
+    /// Deepest stack below the caller's, bytes, as pushes, pops and changes by constants show it.
+    pub stack_bytes: u32,
+    /// Code of all functions that were executed, bytes.
+    pub code_bytes: u32,
+    /// Every counted instruction: how often it was executed, and what it cost in all.
+    pub executions: Vec<(Instruction, u64, Cost)>,
+}
+
+/// Which calls go into [`Followed::executions`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Count {
+    /// All of them.
+    All,
+    /// One of them, counted from 0.
+    At(usize),
+}
+
+/// A call under way.
+struct Call {
+    function: usize,
+    returns_to: u32,
+}
+
+struct Follower<'a> {
+    decoded: Decoded<'a>,
+    entries: Vec<u32>,
+    count: Count,
+    estimators: Vec<Estimator>,
+    calls: Vec<Vec<Cost>>,
+    call: Option<Call>,
+    before: Option<Block>,
+}
+
+impl Follower<'_> {
+    fn see(&mut self, block: Block) -> Result<(), u32> {
+        let Some(before) = self.before.replace(block) else { return Ok(()) };
+        if let Some(Call { function, returns_to }) = self.call {
+            // The block before is timed now that it is known where it led.
+            let estimator = &mut self.estimators[function];
+            estimator.pass(before, block.first, &mut self.decoded)?;
+            if block.first == returns_to {
+                self.calls[function].push(estimator.end());
+                self.call = None;
+            }
+        }
+        if self.call.is_none()
+            && let Some(function) = self.entries.iter().position(|&entry| entry == block.first)
+        {
+            let caller = self.decoded.at(before.last)?;
+            let returns_to = caller.address + caller.size;
+            let number = self.calls[function].len();
+            let counting = match self.count {
+                Count::All => true,
+                Count::At(call) => call == number,
+            };
+            self.estimators[function].begin(counting);
+            self.call = Some(Call { function, returns_to });
+        }
+        Ok(())
+    }
+}
+
+/// Runs a program and times every call of the functions. A call inside of another one's is part of
+/// that.
+pub fn follow(
+    program: &Program<'_>,
+    tracer: Tracer,
+    functions: &[&str],
+    count: Count,
+) -> Result<Vec<Followed>, FollowError> {
+    let image = Image::read(program.image)?;
+    let entries = functions
+        .iter()
+        .map(|name| Ok(image.function(name)?.address))
+        .collect::<Result<_, ImageError>>()?;
+    let mut follower = Follower {
+        decoded: Decoded::new(&image)?,
+        entries,
+        count,
+        estimators: functions.iter().map(|_| Estimator::default()).collect(),
+        calls: vec![Vec::new(); functions.len()],
+        call: None,
+        before: None,
+    };
+    let mut undecodable = None;
+    execute(program, tracer, |block| {
+        if undecodable.is_none() {
+            undecodable = follower.see(block).err();
+        }
+    })?;
+    if let Some(address) = undecodable {
+        return Err(FollowError::Decode(address));
+    }
+    let Follower { mut decoded, estimators, calls, .. } = follower;
+    let mut all = Vec::new();
+    for ((estimator, calls), name) in estimators.iter().zip(calls).zip(functions) {
+        if calls.is_empty() {
+            return Err(FollowError::NotCalled((*name).to_owned()));
+        }
+        let executed: BTreeSet<(u32, u32)> = estimator
+            .blocks()
+            .filter_map(|block| image.function_at(block.first))
+            .map(|function| (function.address, function.size))
+            .collect();
+        all.push(Followed {
+            calls,
+            stack_bytes: estimator.stack_bytes(),
+            code_bytes: executed.iter().map(|(_, size)| size).sum(),
+            executions: estimator.executions(&mut decoded).map_err(FollowError::Decode)?,
+        });
+    }
+    Ok(all)
+}

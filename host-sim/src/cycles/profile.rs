@@ -1,0 +1,170 @@
+//! A closer look at one function: a case of the bench, a single tick of it, or any function of any
+//! Cortex-M image.
+
+use super::bench::{BenchError, measure};
+use super::boot::{self, Argument, BootError};
+use super::breakdown::{Part, by_class, by_function};
+use super::case::{self, CASES, Case, Run};
+use super::estimator::Cost;
+use super::follow::{Count, FollowError, Followed, follow};
+use super::image::{Image, ImageError};
+use super::instruction::Instruction;
+use super::trace::{Program, Tracer};
+use crate::reference::Input;
+use crate::target;
+use std::path::Path;
+
+/// Why there is no profile.
+#[derive(Debug, thiserror::Error)]
+pub enum ProfileError {
+    /// There is no such case.
+    #[error("--case {0}: must be one of {names}", names = CASES.map(|case| case.name).join(", "))]
+    NoCase(String),
+    /// The case has fewer ticks.
+    #[error("--tick {tick}: {case} has ticks 0 to {last}")]
+    NoTick {
+        /// The tick.
+        tick: usize,
+        /// The case.
+        case: &'static str,
+        /// Its last tick.
+        last: usize,
+    },
+    /// The bench could not be run.
+    #[error(transparent)]
+    Bench(#[from] BenchError),
+    /// The image could not be followed.
+    #[error(transparent)]
+    Follow(#[from] FollowError),
+    /// The function cannot be called directly.
+    #[error(transparent)]
+    Boot(#[from] BootError),
+    /// The image could not be read.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+}
+
+/// What was seen of a function.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// What it is of.
+    pub title: String,
+    /// Cost of each call.
+    pub calls: Vec<Cost>,
+    /// Deepest stack, bytes.
+    pub stack_bytes: u32,
+    /// Executed code, whole functions, bytes.
+    pub code_bytes: u32,
+    /// Cost of each function.
+    pub functions: Vec<Part>,
+    /// Cost of each class of instruction.
+    pub classes: Vec<Part>,
+    /// Every executed instruction, with how often it was and its cost in all.
+    pub executions: Vec<(Instruction, u64, Cost)>,
+}
+
+impl Profile {
+    fn new(title: String, image: &Image, followed: Followed) -> Self {
+        Self {
+            title,
+            functions: by_function(image, &followed.executions),
+            classes: by_class(&followed.executions),
+            calls: followed.calls,
+            stack_bytes: followed.stack_bytes,
+            code_bytes: followed.code_bytes,
+            executions: followed.executions,
+        }
+    }
+}
+
+/// A case of the bench: all its ticks, or one of them, which is reached as fast as may be.
+pub fn of_case(name: &str, tick: Option<usize>, tracer: Tracer) -> Result<Profile, ProfileError> {
+    let case = Case::named(name).ok_or_else(|| ProfileError::NoCase(name.to_owned()))?;
+    let mut runs: Vec<Run> =
+        case::runs().into_iter().filter(|run| run.mask & case.bit() != 0).collect();
+    let mut title = format!("{name}, all ticks");
+    let mut count = Count::All;
+    if let Some(tick) = tick {
+        let (run, row) = locate(&runs, tick).ok_or_else(|| {
+            let ticks: usize = runs.iter().map(Run::ticks).sum();
+            ProfileError::NoTick { tick, case: case.name, last: ticks - 1 }
+        })?;
+        let mut run = run.clone();
+        run.scenario.trace.inputs.truncate(row + 1);
+        let Input { activation, path_length, stimulation_frequency } =
+            run.scenario.trace.inputs[row];
+        title = format!(
+            "{name}, tick {tick}: row {row} of {} (activation {activation}, path {path_length} m, \
+             {stimulation_frequency} pps)",
+            run.scenario.name
+        );
+        // Rows before it are executed, to get to its state, and not counted.
+        count = Count::At(row - 1);
+        runs = vec![run];
+    }
+    let (path, followed) = measure(&[*case], &runs, tracer, count)?;
+    let image = Image::read(&path)?;
+    let Some(mut followed) = followed.into_iter().next() else {
+        return Err(FollowError::NotCalled(case.function.to_owned()).into());
+    };
+    if let Count::At(call) = count {
+        followed.calls = followed.calls.split_off(call);
+    }
+    Ok(Profile::new(title, &image, followed))
+}
+
+/// The run that a tick, counted from 0 over all of them, is in, and its row there.
+fn locate(runs: &[Run], tick: usize) -> Option<(&Run, usize)> {
+    let mut before = 0;
+    for run in runs {
+        if tick < before + run.ticks() {
+            return Some((run, tick - before + 1));
+        }
+        before += run.ticks();
+    }
+    None
+}
+
+/// All calls of a function of an image, as its own program makes them; or one call that we make,
+/// with `arguments`.
+pub fn of_image(
+    path: &Path,
+    function: &str,
+    arguments: Option<&[Argument]>,
+    machine: &str,
+    tracer: Tracer,
+) -> Result<Profile, ProfileError> {
+    let image = Image::read(path)?;
+    let entry = image.function(function)?;
+    let folder = tempfile::tempdir().map_err(BootError::Write)?;
+    let loads = match arguments {
+        Some(arguments) => boot::loader_arguments(path, entry.address, arguments, folder.path())?,
+        None => Vec::new(),
+    };
+    let program = Program { image: path, machine, arguments: loads };
+    let followed = follow(&program, tracer, &[function], Count::All)?;
+    let Some(followed) = followed.into_iter().next() else {
+        return Err(FollowError::NotCalled(function.to_owned()).into());
+    };
+    let title = format!("{} of {} on {machine}", entry.name, path.display());
+    Ok(Profile::new(title, &image, followed))
+}
+
+/// The machine that images run on if no other is named.
+pub const MACHINE: &str = target::MACHINE;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tick_is_found_in_its_run() {
+        let runs = case::runs();
+        let first = runs[0].ticks();
+        assert_eq!(locate(&runs, 0).map(|(_, row)| row), Some(1));
+        let (run, row) = locate(&runs, first).expect("a tick of the second run");
+        assert_eq!((run.scenario.name.as_str(), row), (runs[1].scenario.name.as_str(), 1));
+        let all: usize = runs.iter().map(Run::ticks).sum();
+        assert!(locate(&runs, all - 1).is_some() && locate(&runs, all).is_none());
+    }
+}
