@@ -8,3 +8,23 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../vm-nostd/README.md")]
 pub struct ModelReadme;
+
+use host_sim::target::{self, TargetError};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Says why a test did not run, or fails where `VM_REQUIRE_TARGET` is set and it must.
+pub fn skip(reason: &str) {
+    assert!(std::env::var_os("VM_REQUIRE_TARGET").is_none(), "not to be skipped: {reason}");
+    // Past the harness, which keeps what a passing test prints to itself.
+    writeln!(std::io::stderr(), "SKIPPED: {reason}").expect("standard error is open");
+}
+
+/// Builds a program for the target, unless the target's library is not to be had; panics if it
+/// does not build.
+pub fn build(program: &str) -> Result<PathBuf, TargetError> {
+    match target::build(program, &[]) {
+        Err(error @ TargetError::Build { .. }) => panic!("{error}"),
+        other => other,
+    }
+}

@@ -38,10 +38,15 @@ fn mentions(folder: &str, words: &[&str]) -> Vec<String> {
 
 #[test]
 fn the_reference_does_not_know_the_model() {
-    let words = ["vm_nostd", "crate::link", "crate::engine"];
+    let words = ["vm_nostd", "literal_port", "crate::link", "crate::engine"];
     assert_eq!(mentions("host-sim/src/reference", &words), [""; 0]);
     let text = fs::read_to_string(root().join("host-sim/src/reference.rs")).expect("a source");
     assert!(!text.contains("use vm_nostd"));
+}
+
+#[test]
+fn the_baseline_knows_neither_the_model_nor_the_reference() {
+    assert_eq!(mentions("host-sim/literal-port", &["vm_nostd", "host_sim"]), [""; 0]);
 }
 
 #[test]

@@ -6,28 +6,14 @@
 use firmware::{Frame, Record, Rig, Scenario, TICKS};
 use host_sim::target::{self, TargetError};
 use object::{Object, ObjectSymbol};
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::Read;
+use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
+use system_tests::{build, skip};
 
 /// The scenario lasts 12 s on the target; a busy machine may take longer.
 const PATIENCE: Duration = Duration::from_secs(240);
-
-/// Says why a test did not run, or fails where it must.
-fn skip(reason: &str) {
-    assert!(std::env::var_os("VM_REQUIRE_TARGET").is_none(), "not to be skipped: {reason}");
-    // Past the harness, which keeps what a passing test prints to itself.
-    writeln!(std::io::stderr(), "SKIPPED: {reason}").expect("standard error is open");
-}
-
-/// Builds a program, unless the target's library is not to be had; panics if it does not build.
-fn build(program: &str) -> Result<PathBuf, TargetError> {
-    match target::build(program, &[]) {
-        Err(error @ TargetError::Build { .. }) => panic!("{error}"),
-        other => other,
-    }
-}
 
 /// Runs a program on the emulated chip and returns what it wrote.
 fn emulate(program: &Path) -> Result<Vec<u8>, TargetError> {

@@ -37,7 +37,7 @@ pub struct CyclesArgs {
     #[arg(long, requires = "elf", value_name = "NAME")]
     symbol: Option<String>,
     /// Call the function directly instead of running the program: with integers, zeros:64 or
-    /// bytes:00ff for r0 to r3, and 1.5 for s0 to s15.
+    /// bytes:00ff for r0 to r3, 1.5 for s0 to s15, 1.5f64 for d0 to d7.
     #[arg(long, requires = "elf", num_args = 0.., allow_negative_numbers = true,
           value_name = "ARGS")]
     entry: Option<Vec<Argument>>,

@@ -2,9 +2,9 @@
 
 use super::case::{Case, Run};
 use super::follow::{Count, FollowError, Followed, follow};
+use super::image::Image;
 use super::trace::{Program, Tracer};
 use crate::target::{self, TargetError};
-use std::path::PathBuf;
 
 /// Why a case could not be measured.
 #[derive(Debug, thiserror::Error)]
@@ -27,13 +27,14 @@ pub fn measure(
     runs: &[Run],
     tracer: Tracer,
     count: Count,
-) -> Result<(PathBuf, Vec<Followed>), BenchError> {
+) -> Result<(Image, Vec<Followed>), BenchError> {
     let folder = tempfile::tempdir()?;
     let inputs = folder.path().join("inputs.bin");
     std::fs::write(&inputs, encode(runs))?;
-    let image = target::build("bench", &[("VM_BENCH_INPUTS", &inputs)])?;
+    let path = target::build("bench", &[("VM_BENCH_INPUTS", &inputs)])?;
+    let image = Image::read(&path).map_err(FollowError::from)?;
     let functions: Vec<&str> = cases.iter().map(|case| case.function).collect();
-    let followed = follow(&Program::on_board(&image), tracer, &functions, count)?;
+    let followed = follow(&image, &Program::on_board(&path), tracer, &functions, count)?;
     Ok((image, followed))
 }
 

@@ -15,6 +15,8 @@ pub enum Argument {
     Word(u32),
     /// A number in the next of s0 to s15.
     Float(f32),
+    /// A number in the next free pair of s0 to s15, as d0 to d7.
+    Double(f64),
     /// The address of some bytes in the next of r0 to r3.
     Buffer(Vec<u8>),
 }
@@ -22,7 +24,7 @@ pub enum Argument {
 /// Not an argument.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "\"{0}\" is no argument: an integer (42, -1, 0x20), a float (1.5), zeroed bytes (zeros:64) or \
+    "\"{0}\" is no argument: an integer (42, -1, 0x20), a float (1.5 or 1.5f64), zeroed bytes (zeros:64) or \
      given ones (bytes:00ff10)"
 )]
 pub struct ArgumentError(String);
@@ -41,6 +43,8 @@ impl FromStr for Argument {
             count.filter(|&count| count <= BUFFERS).map(|count| Self::Buffer(vec![0; count]))
         } else if let Some(digits) = text.strip_prefix("bytes:") {
             bytes(digits).map(Self::Buffer)
+        } else if let Some(number) = text.strip_suffix("f64") {
+            number.parse().ok().map(Self::Double)
         } else if text.contains('.') {
             text.parse().ok().map(Self::Float)
         } else {
@@ -142,6 +146,11 @@ fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), B
         match argument {
             Argument::Word(word) => words.push(*word),
             Argument::Float(float) => floats.push(float.to_bits()),
+            Argument::Double(double) => {
+                let bits = double.to_bits();
+                floats.resize(floats.len().next_multiple_of(2), 0);
+                floats.extend([bits as u32, (bits >> 32) as u32]);
+            }
             Argument::Buffer(bytes) => {
                 words.push(STACK + buffers.len() as u32);
                 buffers.extend(bytes);
@@ -161,7 +170,12 @@ fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), B
     words.resize(4, 0);
     floats.resize(16, 0);
     let thumb = function | 1;
-    Ok((vec![[CPACR, STACK, thumb].as_slice(), &words, &floats].concat(), buffers))
+    Ok(([[CPACR, STACK, thumb].as_slice(), &words, &floats].concat(), buffers))
+}
+
+/// The instructions that call the function, and their address.
+pub fn code() -> (u32, Vec<u8>) {
+    (CODE, STUB.iter().flat_map(|half| half.to_le_bytes()).collect())
 }
 
 /// What makes QEMU call the function at an address of an image, beside loading that; files go to
@@ -173,10 +187,10 @@ pub fn loader_arguments(
     folder: &Path,
 ) -> Result<Vec<String>, BootError> {
     let (table, buffers) = table(function, arguments)?;
-    let mut code: Vec<u8> = STUB.iter().flat_map(|half| half.to_le_bytes()).collect();
+    let (address, mut code) = code();
     code.extend(table.iter().flat_map(|word| word.to_le_bytes()));
     let mut loads = initialised_data(image)?;
-    loads.push((CODE, code));
+    loads.push((address, code));
     if !buffers.is_empty() {
         loads.push((STACK, buffers));
     }
@@ -231,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_stub_is_what_its_comments_say() {
-        let code: Vec<u8> = STUB.iter().flat_map(|half| half.to_le_bytes()).collect();
+        let (_, code) = code();
         let decoder = Decoder::new().expect("a decoder");
         let mut at = 0;
         let mut texts = Vec::new();
@@ -266,11 +280,11 @@ mod tests {
 
     #[test]
     fn arguments_go_where_the_call_standard_puts_them() {
-        let arguments = ["-1", "1.5", "zeros:3", "bytes:0aff", "0x10"]
+        let arguments = ["-1", "1.5", "zeros:3", "bytes:0aff", "0x10", "-2f64"]
             .map(|text| text.parse().expect("an argument"));
         let (table, buffers) = table(0x0800_0100, &arguments).expect("few enough");
         assert_eq!(table[..7], [CPACR, STACK, 0x0800_0101, u32::MAX, STACK, STACK + 8, 0x10]);
-        assert_eq!(table[7], 1.5_f32.to_bits());
+        assert_eq!(table[7..11], [1.5_f32.to_bits(), 0, 0, 0xC000_0000]);
         assert_eq!(buffers, [0, 0, 0, 0, 0, 0, 0, 0, 0x0A, 0xFF, 0, 0, 0, 0, 0, 0]);
     }
 

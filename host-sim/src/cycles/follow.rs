@@ -93,21 +93,21 @@ impl Follower<'_> {
     }
 }
 
-/// Runs a program and times every call of the functions. A call inside of another one's is part of
+/// Runs a program, of which `image` is the code, and times every call of the functions. A call inside of another one's is part of
 /// that.
 pub fn follow(
+    image: &Image,
     program: &Program<'_>,
     tracer: Tracer,
     functions: &[&str],
     count: Count,
 ) -> Result<Vec<Followed>, FollowError> {
-    let image = Image::read(program.image)?;
     let entries = functions
         .iter()
         .map(|name| Ok(image.function(name)?.address))
         .collect::<Result<_, ImageError>>()?;
     let mut follower = Follower {
-        decoded: Decoded::new(&image)?,
+        decoded: Decoded::new(image)?,
         entries,
         count,
         estimators: functions.iter().map(|_| Estimator::default()).collect(),

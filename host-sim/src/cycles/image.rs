@@ -95,13 +95,18 @@ impl Image {
         for index in 0..functions.len() {
             // One whose size is not given ends where the next one begins.
             if functions[index].size == 0 {
-                let next = functions.get(index + 1).map(|next| next.address);
                 let address = functions[index].address;
-                let end = next.unwrap_or_else(|| section_end(&sections, address));
+                let next = functions.get(index + 1).map_or(u32::MAX, |next| next.address);
+                let end = section_end(&sections, address).min(next);
                 functions[index].size = end.saturating_sub(address);
             }
         }
         Ok(Self { sections, functions })
+    }
+
+    /// Adds code that is not in the file.
+    pub fn add_code(&mut self, address: u32, code: Vec<u8>) {
+        self.sections.push((address, code));
     }
 
     /// The one function whose name is `name` or ends with `::name`.

@@ -102,8 +102,7 @@ pub fn of_case(name: &str, tick: Option<usize>, tracer: Tracer) -> Result<Profil
         count = Count::At(row - 1);
         runs = vec![run];
     }
-    let (path, followed) = measure(&[*case], &runs, tracer, count)?;
-    let image = Image::read(&path)?;
+    let (image, followed) = measure(&[*case], &runs, tracer, count)?;
     let Some(mut followed) = followed.into_iter().next() else {
         return Err(FollowError::NotCalled(case.function.to_owned()).into());
     };
@@ -134,15 +133,16 @@ pub fn of_image(
     machine: &str,
     tracer: Tracer,
 ) -> Result<Profile, ProfileError> {
-    let image = Image::read(path)?;
-    let entry = image.function(function)?;
+    let mut image = Image::read(path)?;
+    let entry = image.function(function)?.clone();
     let folder = tempfile::tempdir().map_err(BootError::Write)?;
-    let loads = match arguments {
-        Some(arguments) => boot::loader_arguments(path, entry.address, arguments, folder.path())?,
-        None => Vec::new(),
-    };
-    let program = Program { image: path, machine, arguments: loads };
-    let followed = follow(&program, tracer, &[function], Count::All)?;
+    let mut program = Program { image: path, machine, arguments: Vec::new() };
+    if let Some(arguments) = arguments {
+        program.arguments = boot::loader_arguments(path, entry.address, arguments, folder.path())?;
+        let (address, code) = boot::code();
+        image.add_code(address, code);
+    }
+    let followed = follow(&image, &program, tracer, &[function], Count::All)?;
     let Some(followed) = followed.into_iter().next() else {
         return Err(FollowError::NotCalled(function.to_owned()).into());
     };

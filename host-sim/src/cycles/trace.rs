@@ -261,7 +261,7 @@ fn log_arguments() -> Result<&'static [&'static str], TraceError> {
 
 fn by_log(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), TraceError> {
     let mut run = Run::start(program, log_arguments()?)?;
-    let mut said = String::new();
+    let mut said = Vec::new();
     if let Some(pipe) = run.child.stderr.take() {
         for line in BufReader::new(pipe).lines() {
             let line = line?;
@@ -270,11 +270,11 @@ fn by_log(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), Trac
                     run.count()?;
                     see(Block { first: address, last: address });
                 }
-                None => said = line,
+                None => said.push(line),
             }
         }
     }
-    run.end(|| said)
+    run.end(|| said.join("\n"))
 }
 
 /// The address in a line such as `Trace 0: 0x7f1e04 [00000000/08000194/00000110/ff000000] main`.

@@ -1,0 +1,46 @@
+//! Cycles: what `vm cycles` says of a function does not depend on how it was traced.
+//!
+//! Where the thumb target or QEMU cannot be had, these tests say SKIPPED.
+
+use host_sim::cycles::{Argument, Profile, ProfileError, Tracer, of_image};
+use host_sim::target::MACHINE;
+use std::path::Path;
+use system_tests::{build, skip};
+
+/// Profile of a direct call of libm's `expf(1.5)`.
+fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, ProfileError> {
+    of_image(image, "expf", Some(&[Argument::Float(1.5)]), machine, tracer)
+}
+
+#[test]
+fn the_plugin_and_the_log_show_the_same_execution() {
+    let profiles = build("firmware").map_err(|error| error.to_string()).and_then(|image| {
+        [Tracer::Plugin, Tracer::Log]
+            .map(|tracer| profile(&image, MACHINE, tracer).map_err(|error| error.to_string()))
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()
+    });
+    let profiles = match profiles {
+        Ok(profiles) => profiles,
+        Err(reason) => return skip(&reason),
+    };
+    assert_eq!(profiles[0].calls, profiles[1].calls);
+    assert_eq!(profiles[0].executions, profiles[1].executions);
+    // The design's figure for it is 105 cycles, by another estimator and compiler.
+    let typical = profiles[0].calls[0].cycles[1];
+    assert!((95..=115).contains(&typical), "{typical}");
+}
+
+#[test]
+fn a_machine_that_is_not_there_is_named_by_the_emulator() {
+    let image = match build("firmware") {
+        Ok(image) => image,
+        Err(reason) => return skip(&reason.to_string()),
+    };
+    let error = profile(&image, "no-such-machine", Tracer::Auto).expect_err("no such machine");
+    let message = error.to_string();
+    if message.contains("apt-get install qemu-system-arm") {
+        return skip(&message);
+    }
+    assert!(message.contains("unsupported machine type"), "{message}");
+}
