@@ -19,6 +19,12 @@ fn main() {
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         let here = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
         println!("cargo::rustc-link-search={here}/..");
+        // The emulated boards with a Cortex-M3 and a Cortex-M0 have their flash at 0, and the
+        // smaller of them, a micro:bit, has 16 KiB of RAM.
+        if env::var("TARGET").as_deref() != Ok("thumbv7em-none-eabihf") {
+            println!("cargo::rustc-link-arg-bins=--defsym=_flash_of_emulated_board=0");
+            println!("cargo::rustc-link-arg-bins=--defsym=_stack_start=0x20004000");
+        }
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
     }
 }

@@ -7,5 +7,5 @@
 mod rig;
 mod scenario;
 
-pub use rig::{FRAME_WORDS, Frame, Inputs, MUSCLE, Record, Rig};
+pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};
 pub use scenario::{Scenario, TICKS};

@@ -1,5 +1,5 @@
 //! The firmware: a 1 kHz SysTick interrupt steps two muscles through the compiled-in scenario,
-//! and the bits of every tick leave through semihosting, little-endian [`Frame`]s on standard
+//! and the bits of every tick leave through semihosting, little-endian frames on standard
 //! output.
 #![no_std]
 #![no_main]
@@ -11,8 +11,11 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m_rt::{entry, exception};
 use cortex_m_semihosting::{debug, hio};
 use critical_section::Mutex;
-use firmware::{FRAME_WORDS, Frame, Record, Rig, Scenario, TICKS};
+use firmware::{Record, Rig, Scenario, TICKS, frame_words};
 use heapless::spsc::{Consumer, Producer, Queue};
+
+/// All bits that a tick leaves.
+type Frame = [u32; frame_words::<f32>()];
 
 /// Frames that can wait between the tick and the host: the tick itself never waits.
 const WAITING: usize = 64;
@@ -22,7 +25,7 @@ static HANDOVER: Mutex<RefCell<Option<Tick>>> = Mutex::new(RefCell::new(None));
 
 /// What the interrupt owns.
 struct Tick {
-    rig: Rig,
+    rig: Rig<f32>,
     outlet: Outlet,
 }
 
@@ -33,8 +36,10 @@ static LOST: AtomicBool = AtomicBool::new(false);
 struct Outlet(Producer<'static, Frame>);
 
 impl Record for Outlet {
-    fn record(&mut self, frame: &Frame) {
-        if self.0.enqueue(*frame).is_err() {
+    fn record(&mut self, words: impl Iterator<Item = u32>) {
+        let mut frame: Frame = [0; _];
+        frame.iter_mut().zip(words).for_each(|(place, word)| *place = word);
+        if self.0.enqueue(frame).is_err() {
             LOST.store(true, Ordering::Relaxed);
         }
     }
@@ -71,7 +76,7 @@ fn report(mut frames: Consumer<'static, Frame>) -> Result<(), ()> {
             cortex_m::asm::wfi();
             continue;
         };
-        let mut bytes = [0; 4 * FRAME_WORDS];
+        let mut bytes = [0; size_of::<Frame>()];
         for (place, word) in bytes.chunks_exact_mut(4).zip(frame) {
             place.copy_from_slice(&word.to_le_bytes());
         }

@@ -2,40 +2,43 @@
 
 use vm_nostd::{
     ContinuousMuscle, FesMuscle, FiberParams, Input, IntramuscularFes, MuscleParams,
-    NaturalContinuous, Output, ParameterError, State, TimeStep, paper_table_1,
+    NaturalContinuous, Output, ParameterError, Scalar, State, TimeStep, paper_table_1,
 };
 
 /// Fibre types of each muscle.
 const TYPES: usize = 2;
-/// Words that a muscle's state is saved in.
-const STATE_WORDS: usize = State::<f32, NaturalContinuous, TYPES>::WORDS;
 /// Words of a muscle's output: force, length, velocity, status.
 const OUTPUT_WORDS: usize = 4;
-/// Words of a [`Frame`].
-pub const FRAME_WORDS: usize = 2 * (STATE_WORDS + OUTPUT_WORDS);
 
-/// All bits that a tick leaves: state and output of the continuous muscle, then of the FES one.
-pub type Frame = [u32; FRAME_WORDS];
+/// An arithmetic of 32-bit words, as firmware runs in.
+pub trait Arithmetic: Scalar<Bits = u32> {}
+impl<S: Scalar<Bits = u32>> Arithmetic for S {}
+
+/// Words that a tick of two muscles leaves.
+pub const fn frame_words<S: Arithmetic>() -> usize {
+    2 * (State::<S, NaturalContinuous, TYPES>::WORDS + OUTPUT_WORDS)
+}
 
 /// Where a tick's inputs come from.
-pub trait Inputs {
+pub trait Inputs<S: Scalar> {
     /// Inputs of the continuous and of the FES muscle for a tick, counted from 0.
-    fn inputs(&mut self, tick: u32) -> [Input<f32>; 2];
+    fn inputs(&mut self, tick: u32) -> [Input<S>; 2];
 }
 
 /// Where a tick's results go.
 pub trait Record {
-    /// Takes the frame of a tick; must not block.
-    fn record(&mut self, frame: &Frame);
+    /// Takes all bits that a tick leaves, [`frame_words`] of them: state and output of the
+    /// continuous muscle, then of the FES one. Must not block.
+    fn record(&mut self, words: impl Iterator<Item = u32>);
 }
 
 /// Two muscles of the paper's kind, one recruited naturally and one by intramuscular FES.
 #[derive(Clone, Debug)]
-pub struct Rig {
-    continuous: ContinuousMuscle<f32, TYPES>,
-    continuous_state: State<f32, NaturalContinuous, TYPES>,
-    fes: FesMuscle<f32, TYPES>,
-    fes_state: State<f32, IntramuscularFes, TYPES>,
+pub struct Rig<S: Arithmetic> {
+    continuous: ContinuousMuscle<S, TYPES>,
+    continuous_state: State<S, NaturalContinuous, TYPES>,
+    fes: FesMuscle<S, TYPES>,
+    fes_state: State<S, IntramuscularFes, TYPES>,
     tick: u32,
 }
 
@@ -53,11 +56,12 @@ pub const MUSCLE: MuscleParams<TYPES> = MuscleParams {
     ],
 };
 
-impl Rig {
+impl<S: Arithmetic> Rig<S> {
     /// Both muscles at rest on a path of `path_length` m, to be ticked at 1 kHz.
     pub fn at_rest(path_length: f32) -> Result<Self, ParameterError> {
         let continuous = ContinuousMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
         let fes = FesMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
+        let path_length = S::path_length(path_length.into());
         Ok(Self {
             continuous_state: continuous.rest(path_length)?,
             continuous,
@@ -75,29 +79,24 @@ impl Rig {
     /// One tick: reads inputs, steps both muscles, records what they were left in.
     ///
     /// Bounded and free of waiting; to be called every millisecond.
-    pub fn tick(&mut self, inputs: &mut impl Inputs, record: &mut impl Record) {
+    pub fn tick(&mut self, inputs: &mut impl Inputs<S>, record: &mut impl Record) {
         let [continuous, fes] = inputs.inputs(self.tick);
         let continuous = self.continuous.step(&mut self.continuous_state, continuous);
         let fes = self.fes.step(&mut self.fes_state, fes);
         self.tick = self.tick.wrapping_add(1);
-
-        let words = self
-            .continuous_state
-            .words()
-            .chain(output_words(&continuous))
-            .chain(self.fes_state.words())
-            .chain(output_words(&fes));
-        let mut frame = [0; FRAME_WORDS];
-        for (place, word) in frame.iter_mut().zip(words) {
-            *place = word;
-        }
-        record.record(&frame);
+        record.record(
+            self.continuous_state
+                .words()
+                .chain(output_words(&continuous))
+                .chain(self.fes_state.words())
+                .chain(output_words(&fes)),
+        );
     }
 }
 
-fn output_words(output: &Output<f32>) -> [u32; OUTPUT_WORDS] {
+fn output_words<S: Arithmetic>(output: &Output<S>) -> [u32; OUTPUT_WORDS] {
     [
-        output.force.to_bits(),
+        S::force_bits(output.force),
         output.fascicle_length.to_bits(),
         output.fascicle_velocity.to_bits(),
         u32::from(output.status.bits()),

@@ -2,7 +2,7 @@
 
 use crate::rig::Inputs;
 use core::f32::consts::TAU;
-use vm_nostd::Input;
+use vm_nostd::{Input, Scalar};
 
 /// Length of the scenario, ticks.
 pub const TICKS: u32 = 12_000;
@@ -22,36 +22,44 @@ const HOLD: u32 = 250;
 /// Ticks between two inputs that are out of their range.
 const MISHAP: u32 = 997;
 
-impl Inputs for Scenario {
-    fn inputs(&mut self, tick: u32) -> [Input<f32>; 2] {
-        let time = tick as f32 * 1e-3;
-        let epoch = tick / HOLD;
-        let held = share(epoch, 0);
-        let next = share(epoch + 1, 0);
-        // Every other epoch ramps to the next level instead of holding its own.
-        let ramp = if epoch.is_multiple_of(2) { (tick % HOLD) as f32 / HOLD as f32 } else { 0.0 };
-        let activation = held + (next - held) * ramp;
-
-        // The path starts where the muscles rest, and swings wide enough for a slack tendon.
-        let swing = libm::sinf(TAU * 1.3 * time) * (time * 0.5).min(1.0);
-        let path_length = Self::RESTING_PATH + 0.02 * swing;
-        let stimulation_frequency = 5.0 + 45.0 * share(tick / (2 * HOLD), 1);
-
-        let mut natural = Input { activation, path_length, stimulation_frequency: 0.0 };
-        let mut stimulated =
-            Input { activation: share(epoch, 2), path_length, stimulation_frequency };
-        if tick % MISHAP == MISHAP - 1 {
-            match (tick / MISHAP) % 6 {
-                0 => natural.activation = f32::NAN,
-                1 => natural.path_length = 0.3,
-                2 => stimulated.stimulation_frequency = f32::INFINITY,
-                3 => stimulated.path_length = f32::NAN,
-                4 => stimulated.activation = -0.5,
-                _ => natural.activation = 7.0,
-            }
-        }
-        [natural, stimulated]
+impl<S: Scalar> Inputs<S> for Scenario {
+    fn inputs(&mut self, tick: u32) -> [Input<S>; 2] {
+        numbers(tick).map(|input| Input {
+            activation: S::from_f64(input.activation.into()),
+            path_length: S::path_length(input.path_length.into()),
+            stimulation_frequency: S::frequency(input.stimulation_frequency.into()),
+        })
     }
+}
+
+/// The inputs of a tick as numbers.
+fn numbers(tick: u32) -> [Input<f32>; 2] {
+    let time = tick as f32 * 1e-3;
+    let epoch = tick / HOLD;
+    let held = share(epoch, 0);
+    let next = share(epoch + 1, 0);
+    // Every other epoch ramps to the next level instead of holding its own.
+    let ramp = if epoch.is_multiple_of(2) { (tick % HOLD) as f32 / HOLD as f32 } else { 0.0 };
+    let activation = held + (next - held) * ramp;
+
+    // The path starts where the muscles rest, and swings wide enough for a slack tendon.
+    let swing = libm::sinf(TAU * 1.3 * time) * (time * 0.5).min(1.0);
+    let path_length = Scenario::RESTING_PATH + 0.02 * swing;
+    let stimulation_frequency = 5.0 + 45.0 * share(tick / (2 * HOLD), 1);
+
+    let mut natural = Input { activation, path_length, stimulation_frequency: 0.0 };
+    let mut stimulated = Input { activation: share(epoch, 2), path_length, stimulation_frequency };
+    if tick % MISHAP == MISHAP - 1 {
+        match (tick / MISHAP) % 6 {
+            0 => natural.activation = f32::NAN,
+            1 => natural.path_length = 0.3,
+            2 => stimulated.stimulation_frequency = f32::INFINITY,
+            3 => stimulated.path_length = f32::NAN,
+            4 => stimulated.activation = -0.5,
+            _ => natural.activation = 7.0,
+        }
+    }
+    [natural, stimulated]
 }
 
 /// A number 0..1 that looks random, the same on every machine; one in four is 0 or 1.

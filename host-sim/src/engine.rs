@@ -12,6 +12,8 @@ pub enum Arithmetic {
     Reference,
     /// vm-nostd in f32, as on the target.
     F32,
+    /// vm-nostd in fixed point, as on a target without a floating-point unit.
+    Fixed,
     /// vm-nostd in f64, which shows the error of the scheme alone.
     F64,
 }
@@ -22,6 +24,7 @@ impl Arithmetic {
         match self {
             Self::Reference => "reference",
             Self::F32 => "f32",
+            Self::Fixed => "fixed",
             Self::F64 => "f64",
         }
     }
@@ -65,6 +68,7 @@ pub fn run(
     match arithmetic {
         Arithmetic::Reference => run_reference(muscle, mode, trace),
         Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut |_| {}),
+        Arithmetic::Fixed => run_vm::<vm::Fixed>(muscle, mode, trace, &mut |_| {}),
         Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut |_| {}),
     }
 }
@@ -95,6 +99,7 @@ pub fn fingerprint(
     match arithmetic {
         Arithmetic::Reference => return Err(RunError::NoBits),
         Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut watch)?,
+        Arithmetic::Fixed => run_vm::<vm::Fixed>(muscle, mode, trace, &mut watch)?,
         Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut watch)?,
     };
     Ok(digest.finalize())
@@ -123,7 +128,7 @@ fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
 ) -> Result<Vec<Row>, RunError> {
     let step = vm::TimeStep::from_seconds(trace.time_step)?;
     let muscle = vm::Muscle::<S, R, N>::build(&link::params(muscle), step)?;
-    let mut state = muscle.rest(S::from_f64(trace.inputs[0].path_length))?;
+    let mut state = muscle.rest(S::path_length(trace.inputs[0].path_length))?;
     let mut rows = vec![row(muscle.observe(&state))];
     for input in &trace.inputs[1..] {
         rows.push(row(muscle.step(&mut state, scaled(input))));
@@ -135,14 +140,14 @@ fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
 fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {
     vm::Input {
         activation: S::from_f64(input.activation),
-        path_length: S::from_f64(input.path_length),
-        stimulation_frequency: S::from_f64(input.stimulation_frequency),
+        path_length: S::path_length(input.path_length),
+        stimulation_frequency: S::frequency(input.stimulation_frequency),
     }
 }
 
 fn row<S: vm::Scalar>(output: vm::Output<S>) -> Row {
     let sample = Sample {
-        force: output.force.to_f64(),
+        force: S::newtons(output.force),
         fascicle_length: output.fascicle_length.to_f64(),
         fascicle_velocity: output.fascicle_velocity.to_f64(),
     };

@@ -42,7 +42,7 @@ pub enum GoldenError {
 pub fn compute() -> Result<BTreeMap<String, String>, RunError> {
     let cases: Vec<_> = scenario::all()
         .into_iter()
-        .flat_map(|s| [Arithmetic::F32, Arithmetic::F64].map(|a| (s.clone(), a)))
+        .flat_map(|s| [Arithmetic::F32, Arithmetic::Fixed, Arithmetic::F64].map(|a| (s.clone(), a)))
         .collect();
     cases
         .par_iter()

@@ -39,35 +39,40 @@ pub enum ReadmeError {
     NoPlace(Place),
 }
 
-/// The table: f32 against the reference, and the reference against the vectors.
+/// The table: f32 and fixed point against the reference, and the reference against the vectors.
 pub fn measured(report: &Report) -> String {
     let mut text = String::from(
-        "| scenario | mode | max, 1 ms | rms, 1 ms | max, 0.5 ms | max, 2 ms | reference, N |\n\
-         |---|---|---:|---:|---:|---:|---:|\n",
+        "| scenario | mode | f32 max | f32 rms | fixed max | fixed rms | f32 0.5 ms | fixed 0.5 ms | \
+         f32 2 ms | reference, N |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
-    let row_of = |scenario: &str, mode: &str, arithmetic: &str| {
-        report
-            .rows
-            .iter()
-            .find(|r| r.scenario == scenario && r.mode == mode && r.arithmetic == arithmetic)
-    };
     let newtons = paper_muscle().f0() / 100.0;
     let at_1_ms = |row: &&Row| row.arithmetic == "f32" && !row.scenario.contains('@');
     for row in report.rows.iter().filter(at_1_ms) {
-        let max_at = |step: &str| {
-            row_of(&format!("{}@{step}", row.scenario), &row.mode, "f32")
-                .map_or("-".to_owned(), |other| format!("{:.4}", other.max_pct_f0))
+        let other = |step: &str, arithmetic: &str| {
+            let scenario = format!("{}{step}", row.scenario);
+            report.rows.iter().find(|other| {
+                (other.scenario == scenario && other.mode == row.mode)
+                    && other.arithmetic == arithmetic
+            })
         };
-        let vector = row_of(&row.scenario, &row.mode, "reference");
+        let max = |step: &str, arithmetic: &str| {
+            let found = other(step, arithmetic);
+            found.map_or("-".to_owned(), |other| format!("{:.4}", other.max_pct_f0))
+        };
+        let fixed_rms =
+            other("", "fixed").map_or("-".to_owned(), |other| format!("{:.4}", other.rms_pct_f0));
+        let vector = other("", "reference")
+            .map_or("-".to_owned(), |vector| format!("{:.4}", vector.max_pct_f0 * newtons));
         text.push_str(&format!(
-            "| {} | {} | {:.4} | {:.4} | {} | {} | {} |\n",
+            "| {} | {} | {:.4} | {:.4} | {} | {fixed_rms} | {} | {} | {} | {vector} |\n",
             row.scenario,
             row.mode,
             row.max_pct_f0,
             row.rms_pct_f0,
-            max_at("0.5ms"),
-            max_at("2ms"),
-            vector.map_or("-".to_owned(), |v| format!("{:.4}", v.max_pct_f0 * newtons)),
+            max("", "fixed"),
+            max("@0.5ms", "f32"),
+            max("@0.5ms", "fixed"),
+            max("@2ms", "f32"),
         ));
     }
     text

@@ -146,7 +146,10 @@ pub fn all() -> Vec<Scenario> {
         };
         scenarios.push(Scenario { flags, ..on_off });
         scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
-            let step = libm::sin(TAU * 2.0 * t).max(0.0);
+            // Off is off: what rounding leaves of a sine's 0 would count as stimulated under FES,
+            // and no fixed-point number could hold it.
+            let sine = libm::sin(TAU * 2.0 * t);
+            let step = if sine > 1e-9 { sine } else { 0.0 };
             [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
         }));
     }

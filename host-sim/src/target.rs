@@ -3,20 +3,35 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The target triple of a Cortex-M4F.
-pub const TRIPLE: &str = "thumbv7em-none-eabihf";
+/// An emulated board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Board {
+    /// The emulator's name of it.
+    pub machine: &'static str,
+    /// The target triple of its core.
+    pub triple: &'static str,
+}
+
+/// STM32F405, a Cortex-M4F: the board of the firmware.
+pub const STM32F405: Board = Board { machine: "netduinoplus2", triple: "thumbv7em-none-eabihf" };
+/// Arm's MPS2 board with a Cortex-M3, which has no floating-point unit.
+pub const CORTEX_M3: Board = Board { machine: "mps2-an385", triple: "thumbv7m-none-eabi" };
+/// nRF51, a Cortex-M0, which has no long multiplication either.
+pub const CORTEX_M0: Board = Board { machine: "microbit", triple: "thumbv6m-none-eabi" };
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
-
-/// The emulator's name of the board: an STM32F405.
-pub const MACHINE: &str = "netduinoplus2";
 
 /// Why the target is not to be had.
 #[derive(Debug, thiserror::Error)]
 pub enum TargetError {
     /// The library of the target is missing, and rustup did not add it.
-    #[error("the library of {TRIPLE} is not installed (rustup target add {TRIPLE}): {0}")]
-    NoLibrary(String),
+    #[error("the library of {triple} is not installed (rustup target add {triple}): {message}")]
+    NoLibrary {
+        /// Which target.
+        triple: &'static str,
+        /// What rustup said.
+        message: String,
+    },
     /// The firmware did not build.
     #[error("the firmware's program {program} does not build:\n{message}")]
     Build {
@@ -45,31 +60,38 @@ pub fn root() -> PathBuf {
 }
 
 /// Adds the target's library where rustup can, and says why it is missing where it is.
-fn ensure_library() -> Result<(), TargetError> {
+fn ensure_library(triple: &'static str) -> Result<(), TargetError> {
     // Without rustup the library may still be there.
-    let added = Command::new("rustup").args(["target", "add", TRIPLE]).current_dir(root()).output();
+    let added = Command::new("rustup").args(["target", "add", triple]).current_dir(root()).output();
     let folder = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", TRIPLE])
+        .args(["--print", "target-libdir", "--target", triple])
         .current_dir(root())
         .output()
         .map(|output| PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()));
     if folder.is_ok_and(|folder| folder.is_dir()) {
         return Ok(());
     }
-    Err(TargetError::NoLibrary(match added {
+    let message = match added {
         Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_owned(),
         Err(error) => format!("rustup: {error}"),
-    }))
+    };
+    Err(TargetError::NoLibrary { triple, message })
 }
 
-/// Builds a program of the firmware and returns its image; `variables` are set for the build.
-pub fn build(program: &str, variables: &[(&str, &Path)]) -> Result<PathBuf, TargetError> {
-    ensure_library()?;
+/// Builds a program of the firmware for a board and returns its image; `variables` are set for the
+/// build.
+pub fn build(
+    board: Board,
+    program: &str,
+    variables: &[(&str, &Path)],
+) -> Result<PathBuf, TargetError> {
+    let triple = board.triple;
+    ensure_library(triple)?;
     // A folder of its own: the host's may be locked by the cargo that runs this.
     let folder = root().join("target/on-target");
     let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
         .args(["build", "--release", "--package", "firmware", "--features", "board"])
-        .args(["--target", TRIPLE, "--bin", program, "--target-dir"])
+        .args(["--target", triple, "--bin", program, "--target-dir"])
         .arg(&folder)
         .envs(variables.iter().copied())
         .current_dir(root())
@@ -79,7 +101,7 @@ pub fn build(program: &str, variables: &[(&str, &Path)]) -> Result<PathBuf, Targ
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         return Err(TargetError::Build { program: program.to_owned(), message });
     }
-    Ok(folder.join(TRIPLE).join("release").join(program))
+    Ok(folder.join(triple).join("release").join(program))
 }
 
 /// QEMU as a machine with nothing connected but semihosting, about to run an image.

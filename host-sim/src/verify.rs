@@ -116,7 +116,7 @@ fn compare(
         let error = ForceError::between(&reference[settled..], &vector[settled..], f0);
         rows.push(judge(Arithmetic::Reference, "vector", error, Default::default()));
     }
-    for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+    for arithmetic in [Arithmetic::F32, Arithmetic::Fixed, Arithmetic::F64] {
         let (computed, flags) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
         rows.push(judge(arithmetic, "reference", error, (flags, scenario.flags)));

@@ -9,7 +9,7 @@ pub struct Readme;
 #[doc = include_str!("../../vm-nostd/README.md")]
 pub struct ModelReadme;
 
-use host_sim::target::{self, TargetError};
+use host_sim::target::{self, Board, TargetError};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -20,10 +20,10 @@ pub fn skip(reason: &str) {
     writeln!(std::io::stderr(), "SKIPPED: {reason}").expect("standard error is open");
 }
 
-/// Builds a program for the target, unless the target's library is not to be had; panics if it
+/// Builds a program for a board, unless the target's library is not to be had; panics if it
 /// does not build.
-pub fn build(program: &str) -> Result<PathBuf, TargetError> {
-    match target::build(program, &[]) {
+pub fn build(board: Board, program: &str) -> Result<PathBuf, TargetError> {
+    match target::build(board, program, &[]) {
         Err(error @ TargetError::Build { .. }) => panic!("{error}"),
         other => other,
     }

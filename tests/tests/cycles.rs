@@ -3,7 +3,7 @@
 //! Where the thumb target or QEMU cannot be had, these tests say SKIPPED.
 
 use host_sim::cycles::{Argument, Profile, ProfileError, Tracer, of_image};
-use host_sim::target::MACHINE;
+use host_sim::target::STM32F405;
 use std::path::Path;
 use system_tests::{build, skip};
 
@@ -14,12 +14,15 @@ fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, Profi
 
 #[test]
 fn the_plugin_and_the_log_show_the_same_execution() {
-    let profiles = build("firmware").map_err(|error| error.to_string()).and_then(|image| {
-        [Tracer::Plugin, Tracer::Log]
-            .map(|tracer| profile(&image, MACHINE, tracer).map_err(|error| error.to_string()))
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()
-    });
+    let profiles =
+        build(STM32F405, "firmware").map_err(|error| error.to_string()).and_then(|image| {
+            [Tracer::Plugin, Tracer::Log]
+                .map(|tracer| {
+                    profile(&image, STM32F405.machine, tracer).map_err(|error| error.to_string())
+                })
+                .into_iter()
+                .collect::<Result<Vec<_>, _>>()
+        });
     let profiles = match profiles {
         Ok(profiles) => profiles,
         Err(reason) => return skip(&reason),
@@ -33,7 +36,7 @@ fn the_plugin_and_the_log_show_the_same_execution() {
 
 #[test]
 fn a_machine_that_is_not_there_is_named_by_the_emulator() {
-    let image = match build("firmware") {
+    let image = match build(STM32F405, "firmware") {
         Ok(image) => image,
         Err(reason) => return skip(&reason.to_string()),
     };

@@ -3,21 +3,22 @@
 //! Where the thumb target or QEMU cannot be had, these tests say SKIPPED; with
 //! `VM_REQUIRE_TARGET` set, as in CI, a skip is a failure.
 
-use firmware::{Frame, Record, Rig, Scenario, TICKS};
-use host_sim::target::{self, TargetError};
+use firmware::{Arithmetic, Record, Rig, Scenario, TICKS, frame_words};
+use host_sim::target::{self, Board, CORTEX_M0, CORTEX_M3, STM32F405, TargetError};
 use object::{Object, ObjectSymbol};
 use std::io::Read;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 use system_tests::{build, skip};
+use vm_nostd::Fixed;
 
 /// The scenario lasts 12 s on the target; a busy machine may take longer.
 const PATIENCE: Duration = Duration::from_secs(240);
 
 /// Runs a program on the emulated chip and returns what it wrote.
-fn emulate(program: &Path) -> Result<Vec<u8>, TargetError> {
-    let mut child = target::emulator(target::MACHINE, program)
+fn emulate(board: Board, program: &Path) -> Result<Vec<u8>, TargetError> {
+    let mut child = target::emulator(board.machine, program)
         .stdout(Stdio::piped())
         .spawn()
         .map_err(target::start_error(target::QEMU))?;
@@ -46,13 +47,13 @@ fn emulate(program: &Path) -> Result<Vec<u8>, TargetError> {
 struct Bytes(Vec<u8>);
 
 impl Record for Bytes {
-    fn record(&mut self, frame: &Frame) {
-        self.0.extend(frame.iter().flat_map(|word| word.to_le_bytes()));
+    fn record(&mut self, words: impl Iterator<Item = u32>) {
+        self.0.extend(words.flat_map(u32::to_le_bytes));
     }
 }
 
-fn on_host() -> Vec<u8> {
-    let mut rig = Rig::at_rest(Scenario::RESTING_PATH).expect("the rig's muscle is valid");
+fn on_host<S: Arithmetic>() -> Vec<u8> {
+    let mut rig = Rig::<S>::at_rest(Scenario::RESTING_PATH).expect("the rig's muscle is valid");
     let mut bytes = Bytes(Vec::new());
     for _ in 0..TICKS {
         rig.tick(&mut Scenario, &mut bytes);
@@ -60,26 +61,57 @@ fn on_host() -> Vec<u8> {
     bytes.0
 }
 
-#[test]
-fn the_target_leaves_the_same_bits_as_the_host_in_every_tick() {
+/// The first tick whose bits differ, if any does.
+fn compare<S: Arithmetic>(on_target: &[u8]) {
     const { assert!(TICKS >= 10_000) };
-    let on_target = match build("firmware").and_then(|program| emulate(&program)) {
-        Ok(bytes) => bytes,
-        Err(reason) => return skip(&reason.to_string()),
-    };
-    let on_host = on_host();
+    let on_host = on_host::<S>();
     assert_eq!(on_target.len(), on_host.len(), "bytes of {TICKS} ticks");
-    let size = size_of::<Frame>();
+    let size = 4 * frame_words::<S>();
     for (tick, (target, host)) in on_target.chunks(size).zip(on_host.chunks(size)).enumerate() {
         assert_eq!(target, host, "tick {tick}");
     }
-    eprintln!("{TICKS} ticks of both modes: {} identical bytes", on_target.len());
+}
+
+#[test]
+fn the_firmware_leaves_the_same_bits_as_the_host_in_every_tick() {
+    let on_target = build(STM32F405, "firmware").and_then(|program| emulate(STM32F405, &program));
+    match on_target {
+        Ok(bytes) => compare::<f32>(&bytes),
+        Err(reason) => skip(&reason.to_string()),
+    }
+}
+
+/// Both arithmetics, both modes, on a core.
+fn golden_on(board: Board) {
+    match build(board, "golden").and_then(|program| emulate(board, &program)) {
+        Ok(bytes) => {
+            let fixed = TICKS as usize * 4 * frame_words::<Fixed>();
+            compare::<Fixed>(&bytes[..fixed]);
+            compare::<f32>(&bytes[fixed..]);
+        }
+        Err(reason) => skip(&reason.to_string()),
+    }
+}
+
+#[test]
+fn a_cortex_m4f_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+    golden_on(STM32F405);
+}
+
+#[test]
+fn a_cortex_m3_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+    golden_on(CORTEX_M3);
+}
+
+#[test]
+fn a_cortex_m0_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+    golden_on(CORTEX_M0);
 }
 
 #[test]
 fn the_scenario_visits_what_a_muscle_can_meet() {
-    let size = size_of::<Frame>();
-    let on_host = on_host();
+    let size = 4 * frame_words::<f32>();
+    let on_host = on_host::<f32>();
     let word = |frame: &[u8], index: usize| {
         u32::from_le_bytes(frame[4 * index..4 * index + 4].try_into().expect("four bytes"))
     };
@@ -96,7 +128,7 @@ fn the_scenario_visits_what_a_muscle_can_meet() {
 
 #[test]
 fn no_panic_is_reachable_from_a_program_that_only_steps() {
-    let program = match build("step") {
+    let program = match build(STM32F405, "step") {
         Ok(program) => program,
         Err(reason) => return skip(&reason.to_string()),
     };

@@ -34,6 +34,17 @@ impl ActivationParams {
         within("activation.length_dependence", self.length_dependence, 0.0, 20.0)
     }
 
+    /// Refuses exponents that the arithmetic cannot hold at the shortest fascicle length.
+    pub(crate) fn validate_magnitudes(
+        &self,
+        shortest: f64,
+        largest: f64,
+    ) -> Result<(), ParameterError> {
+        let exponent = self.exponent + self.length_dependence * (1.0 / shortest - 1.0);
+        within("activation.exponent: n_f at the shortest length", exponent, 0.0, largest)?;
+        within("activation.scale: a_f n_f", self.scale * exponent, 0.0, largest)
+    }
+
     /// The longest fascicle length, in L_ce0 and not above `most`, at which n_f is still defined.
     pub(crate) fn longest_length(&self, most: f64) -> f64 {
         let reciprocal = 1.0 + (LEAST_EXPONENT - self.exponent) / self.length_dependence;
@@ -48,7 +59,6 @@ pub(crate) struct ActivationFrequency<S> {
     /// nf0 - nf1 and nf1.
     exponent: [S; 2],
     scale: S,
-    least: S,
     steepest: S,
     saturated: S,
 }
@@ -61,8 +71,6 @@ pub(crate) struct ActivationCurve<S> {
     exponent_slope: S,
     /// 1/(af n_f).
     per_scale: S,
-    /// Keeps the logarithm in its domain; Af is below 1e-7 there for the smallest n_f.
-    least: S,
     /// Largest relative change of frequency in a tick.
     steepest: S,
     /// Logarithm of the power at which Af is 1 to the last bit.
@@ -77,7 +85,6 @@ impl<S: Scalar> ActivationFrequency<S> {
                 S::from_f64(params.length_dependence),
             ],
             scale: S::from_f64(params.scale),
-            least: S::from_f64(1e-36),
             steepest: S::from_f64(STEEPEST),
             saturated: S::from_f64(SATURATED),
         }
@@ -89,9 +96,8 @@ impl<S: Scalar> ActivationFrequency<S> {
         let exponent = constant + slope * reciprocal;
         ActivationCurve {
             exponent,
-            exponent_slope: -(slope * reciprocal * reciprocal),
-            per_scale: S::ONE / (self.scale * exponent),
-            least: self.least,
+            exponent_slope: -((slope * reciprocal).saturating_mul(reciprocal)),
+            per_scale: S::ONE.ratio(self.scale * exponent),
             steepest: self.steepest,
             saturated: self.saturated,
         }
@@ -102,14 +108,19 @@ impl<S: Scalar> ActivationCurve<S> {
     /// Af for an effective frequency Y S f (f0.5, at least 0), and how much Af changes while
     /// that frequency changes by `frequency_change` and the fascicle by `length_change` (L_ce0).
     pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> (S, S) {
-        let inside = frequency.max(self.least);
-        let logarithm = (inside * self.per_scale).ln();
-        let power = (self.exponent * logarithm).min(self.saturated).exp();
+        if frequency <= S::ZERO {
+            return (S::ZERO, S::ZERO);
+        }
+        // Keeps the logarithm in its domain.
+        let inside = frequency.max(S::LEAST);
+        let logarithm = inside.saturating_mul(self.per_scale).max(S::LEAST).ln();
+        let power = self.exponent.saturating_mul(logarithm).min(self.saturated).exp();
         let remainder = (-power).exp();
         // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
-        let relative = (frequency_change / inside).max(-self.steepest).min(self.steepest);
-        let change =
-            self.exponent * relative + (logarithm - S::ONE) * self.exponent_slope * length_change;
-        (S::ONE - remainder, remainder * power * change)
+        let relative = frequency_change.ratio(inside).max(-self.steepest).min(self.steepest);
+        let exponent_change = self.exponent_slope.saturating_mul(length_change);
+        let change = (self.exponent * relative)
+            .saturating_add((logarithm - S::ONE).saturating_mul(exponent_change));
+        (S::ONE - remainder, (remainder * power).saturating_mul(change))
     }
 }

@@ -37,8 +37,9 @@ const SETTLED: f64 = 0.25;
 /// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<S> {
-    /// How much longer they have become, L_ce0.
-    pub(crate) lengthening: S,
+    /// How much longer they have become, as the velocity that would have done it in a tick,
+    /// L_ce0/s.
+    pub(crate) travel: S,
     /// L_ce0/s.
     pub(crate) velocity: S,
 }
@@ -68,7 +69,7 @@ pub(crate) struct Contractile<S, const N: usize> {
     pub(crate) curves: [VelocityCurve<S>; N],
     /// Passive force at the length the tick starts with and V = 0.
     pub(crate) passive: Course<S>,
-    /// Its slope, F0/L_ce0.
+    /// Its slope, F0 per tick at 1 L_ce0/s.
     pub(crate) passive_slope: S,
     /// The least that the passive force may be, F0.
     pub(crate) passive_floor: S,
@@ -76,48 +77,59 @@ pub(crate) struct Contractile<S, const N: usize> {
 
 /// Coefficients of the mechanics.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Contraction<S> {
+pub(crate) struct Contraction<S: Scalar> {
     pub(crate) tendon: Tendon<S>,
     /// eta, F0 s/L_ce0.
     viscosity: S,
     first: Substep<S>,
     other: Substep<S>,
     others: u8,
-    half: S,
-    two: S,
+    /// A tick, s.
+    tick: S::Factor,
     speed: S,
     residual: S,
 }
 
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
-struct Substep<S> {
+struct Substep<S: Scalar> {
     /// As a share of the tick.
     share: S,
-    /// gamma times the substep, s, and as a share of the tick.
-    gamma_time: S,
+    /// gamma times that.
     gamma_share: S,
-    /// (1 - gamma) times the substep, s.
-    carry_time: S,
+    /// (1 - gamma) times that.
+    carry_share: S,
     /// (1 - gamma)/gamma.
     carry: S,
-    /// Mass over gamma_time, F0 s/L_ce0.
+    /// Mass over gamma times the substep, F0 s/L_ce0.
     inertia: S,
+    inertia_factor: S::Factor,
 }
 
 impl<S: Scalar> Substep<S> {
     /// A substep of `seconds`, for a mass in F0 s²/L_ce0.
     fn new(seconds: f64, step: TimeStep, mass: f64) -> Self {
         let share = seconds / step.seconds();
+        let inertia = mass / (GAMMA * seconds);
         Self {
             share: S::from_f64(share),
-            gamma_time: S::from_f64(GAMMA * seconds),
             gamma_share: S::from_f64(GAMMA * share),
-            carry_time: S::from_f64((1.0 - GAMMA) * seconds),
+            carry_share: S::from_f64((1.0 - GAMMA) * share),
             carry: S::from_f64((1.0 - GAMMA) / GAMMA),
-            inertia: S::from_f64(mass / (GAMMA * seconds)),
+            inertia: S::from_f64(inertia),
+            inertia_factor: S::factor(inertia),
         }
     }
+}
+
+/// Half the mass of a muscle, F0 s²/L_ce0.
+fn moving_mass<const N: usize>(params: &MuscleParams<N>) -> f64 {
+    0.5 * params.mass * params.fascicle_length / params.max_isometric_force()
+}
+
+/// The largest coefficient of the mechanics of a muscle: its inertia in the first substep.
+pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>) -> f64 {
+    moving_mass(params) / (GAMMA * FIRST_SUBSTEP)
 }
 
 /// How many substeps cover `rest` (s), for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
@@ -137,28 +149,31 @@ fn ringing_substeps(rest: f64, mass: f64, stiffness: f64) -> u8 {
 
 impl<S: Scalar> Contraction<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
-        let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
+        let mass = moving_mass(params);
         let stiffness =
             params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length;
         let rest = step.seconds() - FIRST_SUBSTEP;
         let others = ringing_substeps(rest, mass, stiffness);
-        let tendon =
-            Tendon::new(&params.elements.tendon, params.fascicle_length, params.tendon_length);
+        let tendon = &params.elements.tendon;
         Self {
-            tendon,
+            tendon: Tendon::new(tendon, params.fascicle_length, params.tendon_length, step),
             viscosity: S::from_f64(params.elements.parallel.viscosity),
             first: Substep::new(FIRST_SUBSTEP, step, mass),
             other: Substep::new(rest / f64::from(others), step, mass),
             others,
-            half: S::from_f64(0.5),
-            two: S::from_f64(2.0),
+            tick: S::factor(step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
             residual: S::from_f64(SETTLED),
         }
     }
 
+    /// What the fascicles have travelled, L_ce0, by a travel in L_ce0/s and ticks.
+    pub(crate) fn lengthening(&self, travel: S) -> S {
+        travel.scaled(&self.tick)
+    }
+
     /// One tick from `velocity`, in which the tendon, were the fascicles to stay as they are, would
-    /// go linearly through `extension` (kT beyond slack).
+    /// go linearly through `extension` (L_ce0 beyond slack).
     ///
     /// The tendon's extension, not the fascicles' length, carries the state: near slack it is a
     /// small number, and in `f32` a slow motion is not lost in the rounding of a large one.
@@ -168,9 +183,9 @@ impl<S: Scalar> Contraction<S> {
         extension: Course<S>,
         contractile: &Contractile<S, N>,
     ) -> Advanced<S> {
-        let start = Motion { lengthening: S::ZERO, velocity };
+        let start = Motion { travel: S::ZERO, velocity };
         // Time since the tick's middle, in ticks.
-        let mut time = -self.half;
+        let mut time = -S::HALF;
         let mut all = self.substep(&self.first, start, time, extension, contractile);
         time = time + self.first.share;
         for _ in 0..self.others {
@@ -193,9 +208,10 @@ impl<S: Scalar> Contraction<S> {
         let at_first = time + substep.gamma_share;
         let first = self.stage(substep, start, at_first, extension, contractile, start.velocity);
         let velocity = first.motion.velocity;
+        let gained = substep.carry.saturating_mul(velocity - start.velocity);
         let carried = Motion {
-            lengthening: start.lengthening + substep.carry_time * velocity,
-            velocity: start.velocity + substep.carry * (velocity - start.velocity),
+            travel: start.travel + substep.carry_share * velocity,
+            velocity: start.velocity.saturating_add(gained),
         };
         let at_end = time + substep.share;
         let last = self.stage(substep, carried, at_end, extension, contractile, velocity);
@@ -219,9 +235,8 @@ impl<S: Scalar> Contraction<S> {
             extension: extension.middle + extension.change * time,
             // Drawn out to the tick's ends, a gain that falls fast would pass 0.
             gains: contractile.gains.map(|gain| (gain.middle + gain.change * time).max(S::ZERO)),
-            passive: contractile.passive.middle
-                + contractile.passive.change * time
-                + contractile.passive_slope * base.lengthening,
+            passive: (contractile.passive.middle + contractile.passive.change * time)
+                .saturating_add(contractile.passive_slope.saturating_mul(base.travel)),
             contractile,
         };
         let at_zero = stage.residual(true, S::ZERO).value;
@@ -230,7 +245,8 @@ impl<S: Scalar> Contraction<S> {
         let mut residual = S::ZERO;
         for _ in 0..ITERATIONS {
             let found = stage.residual(lengthening, velocity);
-            let next = velocity - found.correction(self.two);
+            let correction = found.value.halley(found.slope, found.half_curvature);
+            let next = velocity.saturating_add(-correction);
             velocity = if lengthening {
                 next.max(S::ZERO).min(self.speed)
             } else {
@@ -238,13 +254,13 @@ impl<S: Scalar> Contraction<S> {
             };
             residual = found.value.abs();
         }
-        let lengthening = base.lengthening + substep.gamma_time * velocity;
-        Solved { motion: Motion { lengthening, velocity }, residual }
+        let travel = base.travel + substep.gamma_share * velocity;
+        Solved { motion: Motion { travel, velocity }, residual }
     }
 }
 
 /// One stage's equation: inertia (V - V_b) + F_ce'(V) - F_se(L_b + gamma h V) = 0.
-struct Stage<'a, S, const N: usize> {
+struct Stage<'a, S: Scalar, const N: usize> {
     contraction: &'a Contraction<S>,
     substep: &'a Substep<S>,
     contractile: &'a Contractile<S, N>,
@@ -254,35 +270,6 @@ struct Stage<'a, S, const N: usize> {
     passive: S,
 }
 
-impl<S: Scalar, const N: usize> Stage<'_, S, N> {
-    /// The residual, F0, on one branch of FV.
-    fn residual(&self, lengthening: bool, velocity: S) -> Residual<S> {
-        let (c, substep) = (self.contraction, self.substep);
-        let resistance = c.viscosity + self.contractile.passive_slope * substep.gamma_time;
-        let (mut force, mut slope, mut curvature) =
-            (self.passive + resistance * velocity, resistance, S::ZERO);
-        if force < self.contractile.passive_floor {
-            (force, slope) = (self.contractile.passive_floor, S::ZERO);
-        }
-        for (gain, curve) in self.gains.iter().zip(&self.contractile.curves) {
-            let (value, steepness, bend) = curve.at(lengthening, velocity);
-            force = force + *gain * value;
-            slope = slope + *gain * steepness;
-            curvature = curvature + *gain * bend;
-        }
-        if force < S::ZERO {
-            (force, slope, curvature) = (S::ZERO, S::ZERO, S::ZERO);
-        }
-        let lengthening = self.base.lengthening + substep.gamma_time * velocity;
-        let (pull, stiffness) = c.tendon.pull(c.tendon.give(self.extension, lengthening));
-        Residual {
-            value: substep.inertia * (velocity - self.base.velocity) + force - pull,
-            slope: substep.inertia + slope + stiffness * substep.gamma_time,
-            curvature,
-        }
-    }
-}
-
 /// The residual of a stage's equation and how it goes on with V.
 struct Residual<S> {
     /// F0.
@@ -290,14 +277,35 @@ struct Residual<S> {
     /// By V; always positive.
     slope: S,
     /// Half the second derivative by V, of FV alone: the tendon's toe is too narrow to follow.
-    curvature: S,
+    half_curvature: S,
 }
 
-impl<S: Scalar> Residual<S> {
-    /// Halley's correction of V: r r'/(r'² - r r''/2), at most twice Newton's.
-    fn correction(&self, two: S) -> S {
-        let square = self.slope * self.slope;
-        let reduced = square - self.value * self.curvature;
-        self.value * self.slope / reduced.max(square / two)
+impl<S: Scalar, const N: usize> Stage<'_, S, N> {
+    /// The residual, F0, on one branch of FV.
+    fn residual(&self, lengthening: bool, velocity: S) -> Residual<S> {
+        let (c, substep) = (self.contraction, self.substep);
+        let resistance = c.viscosity + self.contractile.passive_slope * substep.gamma_share;
+        let mut force = self.passive.saturating_add(resistance.saturating_mul(velocity));
+        let (mut slope, mut half_curvature) = (resistance, S::ZERO);
+        if force < self.contractile.passive_floor {
+            (force, slope) = (self.contractile.passive_floor, S::ZERO);
+        }
+        for (gain, curve) in self.gains.iter().zip(&self.contractile.curves) {
+            let (value, steepness, bend) = curve.at(lengthening, velocity);
+            force = force.saturating_add(*gain * value);
+            slope = slope.saturating_add(*gain * steepness);
+            half_curvature = half_curvature.saturating_add(*gain * bend);
+        }
+        if force < S::ZERO {
+            (force, slope, half_curvature) = (S::ZERO, S::ZERO, S::ZERO);
+        }
+        let travel = self.base.travel + substep.gamma_share * velocity;
+        let pull = c.tendon.pull(self.extension - c.lengthening(travel));
+        let acceleration = (velocity - self.base.velocity).scaled(&substep.inertia_factor);
+        Residual {
+            value: acceleration.saturating_add(force).saturating_add(-pull.force),
+            slope: slope.saturating_add(substep.inertia + pull.stiffness * substep.gamma_share),
+            half_curvature,
+        }
     }
 }

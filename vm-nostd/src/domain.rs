@@ -31,6 +31,9 @@ bitflags::bitflags! {
         /// The forces on the fascicles were still out of balance by more than 0.25 F0 before the
         /// last correction of a velocity, as when a path jumps: force is less accurate.
         const MECHANICS_UNSETTLED = 1 << 9;
+        /// The tendon is extended by more than the arithmetic can tell: its force was taken at
+        /// the most that it can. Only in fixed point, and at more than ten times F0.
+        const TENDON_FORCE_LIMITED = 1 << 10;
     }
 }
 
@@ -46,29 +49,30 @@ pub(crate) struct Range<S> {
     pub(crate) most: S,
 }
 
-impl<S: Scalar> Range<S> {
-    pub(crate) fn new((least, most): (f64, f64)) -> Self {
-        Self { least: S::from_f64(least), most: S::from_f64(most) }
+impl<T: Copy + PartialOrd> Range<T> {
+    pub(crate) fn new((least, most): (f64, f64), nearest: impl Fn(f64) -> T) -> Self {
+        Self { least: nearest(least), most: nearest(most) }
     }
 
-    /// The nearest value in the range, and whether that is another one.
-    pub(crate) fn clip(&self, value: S) -> (S, bool) {
-        let clipped = value.max(self.least).min(self.most);
+    /// The nearest value in the range, and whether that is another one; the least for
+    /// not-a-number.
+    pub(crate) fn clip(&self, value: T) -> (T, bool) {
+        let raised = if value > self.least { value } else { self.least };
+        let clipped = if raised < self.most { raised } else { self.most };
         (clipped, clipped != value)
     }
 
-    pub(crate) fn contains(&self, value: S) -> bool {
+    pub(crate) fn contains(&self, value: T) -> bool {
         value >= self.least && value <= self.most
     }
 }
 
 /// The stated domain of a muscle's inputs and state.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Domain<S> {
+pub(crate) struct Domain<S: Scalar> {
     pub(crate) activation: Range<S>,
-    pub(crate) stimulation_frequency: Range<S>,
-    /// m.
-    pub(crate) path_length: Range<S>,
+    pub(crate) stimulation_frequency: Range<S::Frequency>,
+    pub(crate) path_length: Range<S::PathLength>,
     /// Where the equations of the filaments hold, L_ce0.
     pub(crate) filaments: Range<S>,
     /// The slowest V_max of the types, L_ce0/s: FV of all types holds above.
@@ -85,22 +89,27 @@ impl<S: Scalar> Domain<S> {
         let filaments = params.fascicle_domain();
         let longest = params.max_path_length / params.fascicle_length;
         Self {
-            activation: Range::new((0.0, 1.0)),
-            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY)),
-            path_length: Range::new(params.path_domain()),
-            filaments: Range::new(filaments),
+            activation: Range::new((0.0, 1.0), S::from_f64),
+            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::frequency),
+            path_length: Range::new(params.path_domain(), S::path_length),
+            filaments: Range::new(filaments, S::from_f64),
             shortening_velocity: S::from_f64(params.shortening_velocity()),
-            fascicle_length: Range::new((filaments.0, longest)),
-            fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED)),
+            fascicle_length: Range::new((filaments.0, longest), S::from_f64),
+            fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
         }
     }
 
     /// The input as the model takes it, and what had to be changed.
-    pub(crate) fn admit(&self, input: Input<S>, path_before: S) -> (Input<S>, Status) {
-        let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO);
-        let (stimulation_frequency, f) =
-            admit_one(&self.stimulation_frequency, input.stimulation_frequency, S::ZERO);
-        let (path_length, p) = admit_one(&self.path_length, input.path_length, path_before);
+    pub(crate) fn admit(&self, input: Input<S>, path_before: S::PathLength) -> (Input<S>, Status) {
+        let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO, S::is_finite);
+        let (stimulation_frequency, f) = admit_one(
+            &self.stimulation_frequency,
+            input.stimulation_frequency,
+            self.stimulation_frequency.least,
+            S::frequency_is_finite,
+        );
+        let (path_length, p) =
+            admit_one(&self.path_length, input.path_length, path_before, S::path_is_finite);
         let status = a.flags(Status::ACTIVATION_CLIPPED, Status::ACTIVATION_NOT_FINITE)
             | f.flags(Status::FREQUENCY_CLIPPED, Status::FREQUENCY_NOT_FINITE)
             | p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE);
@@ -126,10 +135,15 @@ impl Admission {
     }
 }
 
-fn admit_one<S: Scalar>(range: &Range<S>, value: S, instead: S) -> (S, Admission) {
+fn admit_one<T: Copy + PartialOrd>(
+    range: &Range<T>,
+    value: T,
+    instead: T,
+    is_finite: impl Fn(T) -> bool,
+) -> (T, Admission) {
     let is_number = value.partial_cmp(&value).is_some();
     let (clipped, changed) = range.clip(if is_number { value } else { instead });
-    let admission = match (value.is_finite(), changed) {
+    let admission = match (is_finite(value), changed) {
         (false, _) => Admission::NotFinite,
         (true, true) => Admission::Clipped,
         (true, false) => Admission::AsIs,

@@ -4,7 +4,7 @@
 //! Rising (f_int >= f_eff): Tf = Tf1 L² + Tf2 f_env; falling: Tf = (Tf3 + Tf4 Af)/L.
 
 use crate::error::{ParameterError, within};
-use crate::scalar::Scalar;
+use crate::scalar::{Lags, Scalar};
 use crate::time_step::TimeStep;
 
 /// Time constants of excitation.
@@ -35,37 +35,50 @@ impl ExcitationParams {
 
 /// The two lags of one fibre type.
 #[derive(Clone, Copy, Debug)]
-pub struct Excitation<S> {
-    // Time constants in ticks.
+pub struct Excitation<S: Scalar> {
+    /// A tick, in the unit of the time constants, a power of two of ticks.
+    tick: S,
+    // Time constants in that unit.
     rise: S,
     rise_per_frequency: S,
     fall: S,
     fall_per_activation: S,
-    half: S,
-    two: S,
 }
 
 /// What one tick does to the two lags.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Excited<S> {
+pub(crate) struct Excited<S: Scalar> {
     /// f_int at the tick's end.
-    pub(crate) intermediate: S,
+    pub(crate) intermediate: S::Slow,
     /// f_eff at the tick's middle.
     pub(crate) effective_at_middle: S,
     /// f_eff at the tick's end.
-    pub(crate) effective: S,
+    pub(crate) effective: S::Slow,
 }
+
+/// No fascicle is longer (L_ce0), and no frequency higher (f0.5), when time constants are chosen a
+/// unit for; what is beyond saturates.
+const LONGEST_FASCICLE: f64 = 2.0;
+const HIGHEST_FREQUENCY: f64 = 100.0;
+/// The greatest that a time constant should be in its unit.
+const ROOM: f64 = 100.0;
 
 impl<S: Scalar> Excitation<S> {
     pub(crate) fn new(params: &ExcitationParams, step: TimeStep) -> Self {
-        let ticks = |seconds: f64| S::from_f64(seconds / step.seconds());
+        let longest = params.rise * LONGEST_FASCICLE * LONGEST_FASCICLE
+            + params.rise_per_frequency * HIGHEST_FREQUENCY
+            + params.fall
+            + params.fall_per_activation;
+        let mut unit = step.seconds();
+        while longest > ROOM * unit {
+            unit *= 2.0;
+        }
         Self {
-            rise: ticks(params.rise),
-            rise_per_frequency: ticks(params.rise_per_frequency),
-            fall: ticks(params.fall),
-            fall_per_activation: ticks(params.fall_per_activation),
-            half: S::from_f64(0.5),
-            two: S::from_f64(2.0),
+            tick: S::from_f64(step.seconds() / unit),
+            rise: S::from_f64(params.rise / unit),
+            rise_per_frequency: S::from_f64(params.rise_per_frequency / unit),
+            fall: S::from_f64(params.fall / unit),
+            fall_per_activation: S::from_f64(params.fall_per_activation / unit),
         }
     }
 
@@ -76,36 +89,46 @@ impl<S: Scalar> Excitation<S> {
     /// exactly; where f_int and f_eff cross within the tick, x is put together from both sides.
     pub(crate) fn advance(
         &self,
-        (intermediate, effective): (S, S),
+        (intermediate, effective): (S::Slow, S::Slow),
         drive: S,
         frequency: S,
         slowing: S,
         fascicle_length: S,
     ) -> Excited<S> {
-        let rise_time =
-            self.rise * fascicle_length * fascicle_length + self.rise_per_frequency * frequency;
-        let rising = S::ONE / rise_time;
-        let falling = fascicle_length / (self.fall + self.fall_per_activation * slowing);
+        let rise_time = (self.rise * fascicle_length * fascicle_length)
+            .saturating_add(self.rise_per_frequency.saturating_mul(frequency));
+        let fall_time = self.fall + self.fall_per_activation * slowing;
+        let rising = self.tick.ratio(rise_time);
+        let falling = (self.tick * fascicle_length).ratio(fall_time);
 
-        let lead = intermediate - effective;
-        let excess = intermediate - drive;
+        let lead = S::of(intermediate) - S::of(effective);
+        let excess = S::of(intermediate) - drive;
         let (before, after) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
         // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess.
         let converging = (lead >= S::ZERO) == (excess > S::ZERO);
-        let crosses = converging && lead.abs() < excess.abs() * before;
-        let x = if crosses { after + lead / excess * (S::ONE - after / before) } else { before };
+        let crosses = converging && lead.abs() < excess.abs().saturating_mul(before);
+        let x = if crosses {
+            // Before they cross, x grows at one rate, and from then on at the other.
+            let left = S::ONE - lead.abs().ratio(excess.abs().saturating_mul(before));
+            lead.abs().ratio(excess.abs()) + after * left
+        } else {
+            before
+        };
 
-        // In changes, not in values: a slow lag's are far below the values' last bits.
-        let x_middle = x * self.half;
-        let done_middle = -(-x_middle).exp_m1();
-        let done = done_middle * (self.two - done_middle);
-        let lag = effective - drive;
-        let effective_at =
-            |x: S, done: S| (effective + (excess * x * (S::ONE - done) - lag * done)).max(S::ZERO);
+        let [half, whole] = x.lags();
+        let lag = S::of(effective) - drive;
+        let effective_after = |lags: Lags<S::Share>| {
+            let moved = S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done));
+            not_negative::<S>(moved)
+        };
         Excited {
-            intermediate: (intermediate - excess * done).max(S::ZERO),
-            effective_at_middle: effective_at(x_middle, done_middle),
-            effective: effective_at(x, done),
+            intermediate: not_negative::<S>(S::moved(intermediate, -excess, whole.done)),
+            effective_at_middle: S::of(effective_after(half)),
+            effective: effective_after(whole),
         }
     }
+}
+
+fn not_negative<S: Scalar>(value: S::Slow) -> S::Slow {
+    if S::of(value) < S::ZERO { S::ZERO.slow() } else { value }
 }

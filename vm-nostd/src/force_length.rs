@@ -27,13 +27,11 @@ impl ForceLengthParams {
 
 /// FL of one fibre type.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ForceLength<S> {
+pub(crate) struct ForceLength<S: Scalar> {
     skewness: S,
     roundness: S,
     /// 1/omega.
-    per_width: S,
-    /// Keeps the logarithm in its domain; so near to the optimum FL is 1 within 1e-9.
-    least: S,
+    per_width: S::Factor,
 }
 
 impl<S: Scalar> ForceLength<S> {
@@ -41,22 +39,22 @@ impl<S: Scalar> ForceLength<S> {
         Self {
             skewness: S::from_f64(params.skewness),
             roundness: S::from_f64(params.roundness),
-            per_width: S::from_f64(1.0 / params.width),
-            least: S::from_f64(1e-9),
+            per_width: S::factor(1.0 / params.width),
         }
     }
 
     /// FL (0..1) and its slope (1/L_ce0) from the fascicle length's logarithm and reciprocal.
     pub(crate) fn at(&self, logarithm: S, reciprocal: S) -> (S, S) {
         let power = (self.skewness * logarithm).exp();
-        let offset = (power - S::ONE) * self.per_width;
-        let distance = offset.abs().max(self.least);
-        let exponent = (self.roundness * distance.ln()).exp();
+        let offset = (power - S::ONE).scaled(&self.per_width);
+        // Keeps the logarithm in its domain; so near to the optimum FL is 1.
+        let distance = offset.abs().max(S::LEAST);
+        let exponent = (self.roundness.saturating_mul(distance.ln())).exp();
         let value = (-exponent).exp();
         // d|z|^rho/dL = rho |z|^rho / z * dz/dL, with dz/dL = beta L^beta / (L omega).
-        let signed = if offset < S::ZERO { -distance } else { distance };
-        let growth = self.roundness * exponent / signed
-            * (self.skewness * power * reciprocal * self.per_width);
-        (value, -(value * growth))
+        let growth = self.roundness * value * exponent.ratio(distance);
+        let turned = (self.skewness * reciprocal).saturating_mul(power).scaled(&self.per_width);
+        let slope = growth.saturating_mul(turned);
+        (value, if offset < S::ZERO { slope } else { -slope })
     }
 }

@@ -52,6 +52,34 @@ impl ForceVelocityParams {
         if c1 > 0.0 { ((POLE_MARGIN - 1.0 - c0) / c1).max(least) } else { least }
     }
 
+    /// Refuses coefficients that the arithmetic cannot hold between two fascicle lengths: those of
+    /// both branches, (1 + n V)/(1 + d V), and what they are made from.
+    pub(crate) fn validate_magnitudes(
+        &self,
+        least: f64,
+        most: f64,
+        largest: f64,
+    ) -> Result<(), ParameterError> {
+        let within = |field, value: f64| within(field, value, -largest, largest);
+        let v_max = self.maximum_velocity;
+        within("force_velocity.maximum_velocity", v_max)?;
+        within("force_velocity.maximum_velocity: its reciprocal", 1.0 / v_max)?;
+        let [c0, c1] = self.shortening;
+        let [a0, a1, a2] = self.lengthening;
+        let b = self.lengthening_velocity;
+        within("force_velocity.lengthening_velocity: its reciprocal", 1.0 / b)?;
+        for coefficient in [c0 / v_max, c1 * most / v_max] {
+            within("force_velocity.shortening: relative to V_max", coefficient)?;
+        }
+        // Evaluated from the last coefficient on; each part is largest at an end.
+        for length in [least, most] {
+            for part in [a0, (a1 + a2 * length) * length, a1, a2 * length] {
+                within("force_velocity.lengthening: relative to b_V", part / b)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses coefficients with which force would not rise with velocity somewhere between two
     /// fascicle lengths: the sign of V could not be told from the forces there.
     pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
@@ -72,7 +100,7 @@ impl ForceVelocityParams {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceVelocity<S> {
     maximum_velocity: S,
-    /// 1/Vmax, cV0/Vmax, cV1/Vmax.
+    /// -1/Vmax, and cV0/Vmax, cV1/Vmax.
     per_maximum: S,
     shortening: [S; 2],
     /// 1/bV and -aV0/bV, -aV1/bV, -aV2/bV.
@@ -86,7 +114,7 @@ impl<S: Scalar> ForceVelocity<S> {
         let b = params.lengthening_velocity;
         Self {
             maximum_velocity: S::from_f64(v_max),
-            per_maximum: S::from_f64(1.0 / v_max),
+            per_maximum: S::from_f64(-1.0 / v_max),
             shortening: params.shortening.map(|c| S::from_f64(c / v_max)),
             per_lengthening: S::from_f64(1.0 / b),
             lengthening: params.lengthening.map(|a| S::from_f64(-a / b)),
@@ -100,7 +128,7 @@ impl<S: Scalar> ForceVelocity<S> {
         VelocityCurve {
             maximum_velocity: self.maximum_velocity,
             shortening: Branch {
-                numerator: -self.per_maximum,
+                numerator: self.per_maximum,
                 denominator: c0 + c1 * fascicle_length,
             },
             lengthening: Branch {
@@ -132,11 +160,9 @@ impl<S: Scalar> VelocityCurve<S> {
     pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S, S) {
         let branch = if lengthening { self.lengthening } else { self.shortening };
         let inside = velocity.max(self.maximum_velocity);
-        let reciprocal = S::ONE / (S::ONE + branch.denominator * inside);
-        let value = (S::ONE + branch.numerator * inside) * reciprocal;
-        let slope = (branch.numerator - branch.denominator) * (reciprocal * reciprocal);
+        let (value, slope, bend) = inside.hyperbola(branch.numerator, branch.denominator);
         if velocity > self.maximum_velocity {
-            (value, slope, -(branch.denominator * slope * reciprocal))
+            (value, slope, bend)
         } else {
             (value, S::ZERO, S::ZERO)
         }

@@ -10,6 +10,7 @@
 #![cfg_attr(not(test), no_std)]
 
 mod activation;
+mod bank;
 mod contraction;
 mod domain;
 mod error;
@@ -26,13 +27,14 @@ mod presets;
 mod recruitment;
 mod sag;
 mod scalar;
-mod softplus;
 mod state;
 mod tendon;
 mod time_step;
+mod units;
 mod yielding;
 
 pub use activation::ActivationParams;
+pub use bank::{Bank, BankFull, BankedMuscle};
 pub use domain::Status;
 pub use error::{Limit, ParameterError};
 pub use excitation::ExcitationParams;
@@ -45,6 +47,7 @@ pub use presets::{feline_vm4, human_vm4, paper_table_1};
 pub use recruitment::{IntramuscularFes, NaturalContinuous, Recruitment};
 pub use sag::SagParams;
 pub use scalar::Scalar;
+pub use scalar::fixed::Fixed;
 pub use state::{RestoreError, State};
 pub use tendon::TendonParams;
 pub use time_step::TimeStep;

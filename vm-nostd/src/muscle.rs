@@ -21,24 +21,24 @@ use core::marker::PhantomData;
 
 /// Inputs of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Input<S> {
+pub struct Input<S: Scalar> {
     /// Activation U (natural modes) or strength of the stimulus (FES), 0..1, in force during
     /// the tick.
     pub activation: S,
-    /// Musculotendon path length L_mt at the tick's end, m; it is taken to have changed
-    /// linearly since the tick before.
-    pub path_length: S,
+    /// Musculotendon path length L_mt at the tick's end, in m (in fixed point: µm); it is taken
+    /// to have changed linearly since the tick before.
+    pub path_length: S::PathLength,
     /// Stimulation frequency f_stim, pps, 0..500, in force during the tick (FES only).
-    pub stimulation_frequency: S,
+    pub stimulation_frequency: S::Frequency,
 }
 
 /// What one tick yields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Output<S> {
-    /// Tendon force F0 F_se, N; never negative. It has no upper bound but the tendon's stiffness: a
+pub struct Output<S: Scalar> {
+    /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. It has no upper bound but the tendon's stiffness: a
     /// path that jumps, as a faulty sensor may, stretches the tendon by all of it.
-    pub force: S,
+    pub force: S::Force,
     /// Fascicle length L, L_ce0.
     pub fascicle_length: S,
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
@@ -64,14 +64,16 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     compression: Compression<S>,
     contraction: Contraction<S>,
     passive_floor: S,
-    max_isometric_force: S,
-    time_step: S,
-    half: S,
+    /// F0.
+    force: S::Factor,
+    max_isometric_force: S::Force,
+    /// Ticks per second.
+    tick_rate: S::Factor,
 }
 
 /// The coefficients of one fibre type.
 #[derive(Clone, Copy, Debug)]
-struct Fiber<S> {
+struct Fiber<S: Scalar> {
     excitation: Excitation<S>,
     sag: Sag<S>,
     yielding: Yielding<S>,
@@ -102,60 +104,63 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// limit it broke.
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
         params.validate()?;
+        params.validate_magnitudes(S::LARGEST_COEFFICIENT)?;
+        within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
         let elements = &params.elements;
         // Without a floor of its own, the passive force ends where nothing will ever push it.
-        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { 0.0 } else { -1e3 };
+        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { 0.0 } else { -100.0 };
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, step),
             fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
-            parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length()),
-            compression: Compression::new(&elements.compression),
+            parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
+            compression: Compression::new(&elements.compression, step),
             contraction: Contraction::new(params, step),
             passive_floor: S::from_f64(floor),
-            max_isometric_force: S::from_f64(params.max_isometric_force()),
-            time_step: S::from_f64(step.seconds()),
-            half: S::from_f64(0.5),
+            max_isometric_force: S::ONE.force(&S::force_factor(params.max_isometric_force())),
+            force: S::force_factor(params.max_isometric_force()),
+            tick_rate: S::factor(1.0 / step.seconds()),
         })
     }
 
-    /// The muscle at rest on a path of `path_length` m: not activated, not moving, tendon and
+    /// The muscle at rest on a path of `path_length`: not activated, not moving, tendon and
     /// parallel elastic element in balance. Refused outside of
     /// [`path_length_range`](Self::path_length_range).
-    pub fn rest(&self, path_length: S) -> Result<State<S, R, N>, ParameterError> {
+    pub fn rest(&self, path_length: S::PathLength) -> Result<State<S, R, N>, ParameterError> {
         let range = &self.domain.path_length;
-        within("path_length", path_length.to_f64(), range.least.to_f64(), range.most.to_f64())?;
+        let metres = S::path_metres;
+        within("path_length", metres(path_length), metres(range.least), metres(range.most))?;
         let tendon = &self.contraction.tendon;
         let lengths = &self.domain.fascicle_length;
         let mut least = tendon.extension(path_length, lengths.most);
         let mut most = tendon.extension(path_length, lengths.least);
         for _ in 0..REST_BISECTIONS {
-            let extension = (least + most) * self.half;
+            let extension = (least + most) * S::HALF;
             let length = tendon.fascicle_length(path_length, extension);
             // The tendon pulls more, and the parallel element less, the further it is extended.
-            if tendon.pull(extension).0 > self.parallel.at(length).0 {
+            if tendon.pull(extension).force > self.parallel.at(length).0 {
                 most = extension;
             } else {
                 least = extension;
             }
         }
         Ok(State {
-            tendon_extension: (least + most) * self.half,
+            tendon_extension: (least + most) * S::HALF,
             fascicle_velocity: S::ZERO,
             path_length,
-            effective_activation: S::ZERO,
+            effective_activation: S::ZERO.slow(),
             fibers: self.fibers.map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
             recruitment: PhantomData,
         })
     }
 
-    /// Maximal isometric force F0, N.
-    pub fn max_isometric_force(&self) -> S {
+    /// Maximal isometric force F0, in N (in fixed point: mN).
+    pub fn max_isometric_force(&self) -> S::Force {
         self.max_isometric_force
     }
 
-    /// Shortest and longest path (m) that are taken as they are; others are clipped and flagged.
-    pub fn path_length_range(&self) -> (S, S) {
+    /// Shortest and longest path that are taken as they are; others are clipped and flagged.
+    pub fn path_length_range(&self) -> (S::PathLength, S::PathLength) {
         (self.domain.path_length.least, self.domain.path_length.most)
     }
 
@@ -171,7 +176,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     pub fn observe(&self, state: &State<S, R, N>) -> Output<S> {
         let tendon = &self.contraction.tendon;
         Output {
-            force: self.max_isometric_force * tendon.pull(state.tendon_extension).0,
+            force: tendon.pull(state.tendon_extension).force.force(&self.force),
             fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
             fascicle_velocity: state.fascicle_velocity,
             status: Status::empty(),
@@ -189,8 +194,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let tendon = &self.contraction.tendon;
 
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
-        let travel = state.fascicle_velocity * self.time_step;
-        let (middle, _) = self.domain.fascicle_length.clip(length + travel * self.half);
+        let travel = self.contraction.lengthening(state.fascicle_velocity);
+        let (middle, _) = self.domain.fascicle_length.clip(length + travel * S::HALF);
 
         let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
         let recruited = self.recruitment.advance(
@@ -202,24 +207,32 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         );
         let contractile = self.contractile(state, &recruited, length, middle, travel);
 
-        let stretch = tendon.stretch(input.path_length - state.path_length);
+        let stretch = tendon.stretch(state.path_length, input.path_length);
         let extension =
-            Course { middle: state.tendon_extension + stretch * self.half, change: stretch };
+            Course { middle: state.tendon_extension + stretch * S::HALF, change: stretch };
         let end = self.contraction.advance(state.fascicle_velocity, extension, &contractile);
         status.set(Status::MECHANICS_UNSETTLED, !end.settled);
-        let Motion { lengthening, velocity } = end.motion;
+        let Motion { travel, velocity } = end.motion;
         state.path_length = input.path_length;
         state.fascicle_velocity = velocity;
-        state.tendon_extension = tendon.give(state.tendon_extension + stretch, lengthening);
+        state.tendon_extension =
+            state.tendon_extension + stretch - self.contraction.lengthening(travel);
         status |= self.confine(state, middle);
 
         for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
             let target = fiber.yielding.target(state.fascicle_velocity);
-            let mean = (kept.yielding_target + target) * self.half;
+            let mean = (kept.yielding_target + target) * S::HALF;
             kept.yielding = fiber.yielding.advance(kept.yielding, mean);
             kept.yielding_target = target;
         }
-        Output { status, ..self.observe(state) }
+        let tendon_pull = tendon.pull(state.tendon_extension);
+        status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
+        Output {
+            force: tendon_pull.force.force(&self.force),
+            fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
+            fascicle_velocity: state.fascicle_velocity,
+            status,
+        }
     }
 
     /// Keeps length and velocity inside what the state can hold, and says what it had to keep, and
@@ -257,7 +270,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         travel: S,
     ) -> Contractile<S, N> {
         let (inside, _) = self.domain.filaments.clip(middle);
-        let reciprocal = S::ONE / inside;
+        let reciprocal = S::ONE.ratio(inside);
         let logarithm = inside.ln();
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
@@ -269,14 +282,15 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         {
             let sag = fiber.sag.advance(kept.sag, unit.firing);
             let yielding = fiber.yielding.advance(kept.yielding, kept.yielding_target);
-            let before = kept.yielding * kept.sag;
-            let after = yielding * sag;
-            let modulation = (before + after) * self.half;
+            let before = S::of(kept.yielding) * S::of(kept.sag);
+            let after = S::of(yielding) * S::of(sag);
+            let modulation = (before + after) * S::HALF;
             kept.sag = sag;
 
             let (activation, activation_change) = fiber.activation.at(reciprocal).at(
-                unit.frequency.middle * modulation,
-                unit.frequency.change * modulation + unit.frequency.middle * (after - before),
+                unit.frequency.middle.saturating_mul(modulation),
+                (unit.frequency.change * modulation)
+                    .saturating_add(unit.frequency.middle.saturating_mul(after - before)),
                 travel,
             );
             kept.activation = (activation + activation_change).max(S::ZERO).min(S::ONE);
@@ -299,7 +313,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             gains,
             curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside)),
             passive: Course {
-                middle: passive_at_middle + passive_slope * (start - middle),
+                middle: passive_at_middle
+                    + passive_slope.saturating_mul((start - middle).scaled(&self.tick_rate)),
                 change: compressed.change * compression,
             },
             passive_slope,

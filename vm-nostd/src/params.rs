@@ -1,6 +1,8 @@
 //! What a muscle is made of, in SI units and `f64`, and the limits of what can be built.
 
 use crate::activation::ActivationParams;
+use crate::contraction::largest_inertia;
+use crate::domain::MAXIMUM_STIMULATION_FREQUENCY;
 use crate::error::{Limit, ParameterError, within};
 use crate::excitation::ExcitationParams;
 use crate::force_length::ForceLengthParams;
@@ -118,6 +120,9 @@ const LEAST_PATH_RANGE: f64 = 0.1;
 const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 /// Fields that are refused for what follows from them.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
+/// Fields that fixed point refuses for what follows from them.
+const INERTIA: &str = "fascicle_length: inertia in the first substep, F0 s/L_ce0";
+const REACH: &str = "max_path_length: range of the path, L_ce0";
 const LONGEST_LENGTH: &str = "activation.length_dependence: longest length (L_ce0) with n_f >= 0.2";
 /// A type must be usable at least between these fascicle lengths, L_ce0.
 const LONGEST_LOWER_EDGE: f64 = 0.9;
@@ -188,6 +193,32 @@ impl<const N: usize> MuscleParams<N> {
         let room = LEAST_PATH_RANGE * self.fascicle_length;
         let (least, most) = (path_at(least).max(self.path_domain().0 + room), path_at(most));
         within("max_path_length", self.max_path_length, least, most)
+    }
+
+    /// Whether no coefficient, and no force on the way, is larger than the arithmetic holds: in
+    /// fixed point a number ends at 128, and sums of two coefficients have to fit.
+    pub(crate) fn validate_magnitudes(&self, largest: f64) -> Result<(), ParameterError> {
+        let (shortest, longest) = self.fascicle_domain();
+        within(INERTIA, largest_inertia(self), 0.0, largest)?;
+        // A path reaches this far where no tendon is left.
+        let reach = self.max_path_length / self.fascicle_length;
+        within(REACH, reach - self.path_domain().0 / self.fascicle_length, 0.0, largest)?;
+        let parallel = self.elements.parallel.force(reach / self.maximum_fascicle_length());
+        within("parallel.stiffness: force on the longest path, F0", parallel, 0.0, largest)?;
+        let compression = self.elements.compression.force(shortest);
+        within(
+            "compression.strength: force at the shortest length, F0",
+            compression,
+            -largest,
+            0.0,
+        )?;
+        self.each_fiber(|t| {
+            let frequency = MAXIMUM_STIMULATION_FREQUENCY / t.half_force_frequency;
+            // Added to nothing, it may be as large as two coefficients.
+            within("half_force_frequency: 500 pps, f0.5", frequency, 0.0, 2.0 * largest)?;
+            t.activation.validate_magnitudes(shortest, largest)?;
+            t.force_velocity.validate_magnitudes(shortest, longest, largest)
+        })
     }
 
     /// Checks every type; the error says which.

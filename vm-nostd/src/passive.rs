@@ -2,7 +2,7 @@
 
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
-use crate::softplus::softplus;
+use crate::time_step::TimeStep;
 
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl ParallelParams {
 
     /// F_pe1 in F0 at V = 0 for a fascicle length in L_max.
     pub(crate) fn force(&self, length: f64) -> f64 {
-        self.stiffness * self.toe * softplus((length - self.slack_length) / self.toe).0
+        self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
     }
 }
 
@@ -57,58 +57,82 @@ impl CompressionParams {
     }
 }
 
+impl CompressionParams {
+    /// F_pe2 in F0 for a fascicle length in L_ce0.
+    pub(crate) fn force(&self, length: f64) -> f64 {
+        let growth = Scalar::exp(self.steepness * (length - self.onset_length));
+        Scalar::min(self.strength * (growth - 1.0), 0.0)
+    }
+}
+
 /// The elastic part of F_pe1 for one muscle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Parallel<S> {
+pub(crate) struct Parallel<S: Scalar> {
+    /// Lr1 L_max, L_ce0.
+    slack_length: S,
     /// 1/(L_max k1).
-    per_fascicle: S,
-    /// Lr1/k1.
-    slack: S,
+    per_toe: S::Factor,
     /// c1 k1, F0.
-    force: S,
-    /// c1/L_max, F0/L_ce0.
-    stiffness: S,
+    force: S::Factor,
+    /// c1/L_max times the time step, F0 per L_ce0/s and tick.
+    stiffness: S::Factor,
 }
 
 impl<S: Scalar> Parallel<S> {
-    pub(crate) fn new(params: &ParallelParams, maximum_fascicle_length: f64) -> Self {
+    pub(crate) fn new(
+        params: &ParallelParams,
+        maximum_fascicle_length: f64,
+        step: TimeStep,
+    ) -> Self {
         Self {
-            per_fascicle: S::from_f64(1.0 / (maximum_fascicle_length * params.toe)),
-            slack: S::from_f64(params.slack_length / params.toe),
-            force: S::from_f64(params.stiffness * params.toe),
-            stiffness: S::from_f64(params.stiffness / maximum_fascicle_length),
+            slack_length: S::from_f64(params.slack_length * maximum_fascicle_length),
+            per_toe: S::factor(1.0 / (maximum_fascicle_length * params.toe)),
+            force: S::factor(params.stiffness * params.toe),
+            stiffness: S::factor(params.stiffness / maximum_fascicle_length * step.seconds()),
         }
     }
 
-    /// Force (F0) at V = 0 and its slope (F0/L_ce0) at a fascicle length in L_ce0.
+    /// Force (F0) at V = 0 and its slope (F0 per L_ce0/s and tick) at a length in L_ce0.
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
-        let (value, slope) = softplus(fascicle_length * self.per_fascicle - self.slack);
-        (self.force * value, self.stiffness * slope)
+        let (value, slope) = (fascicle_length - self.slack_length).scaled(&self.per_toe).softplus();
+        (value.scaled(&self.force), slope.scaled(&self.stiffness))
     }
 }
 
 /// F_pe2, shared by the fibre types; it counts in proportion to their activation.
+///
+/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), of which no part is large.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Compression<S> {
+pub(crate) struct Compression<S: Scalar> {
+    /// |c2|, F0.
     strength: S,
-    steepness: S,
-    onset_length: S,
+    /// k2.
+    steepness: S::Factor,
+    /// Length at which the exponential is 1, L_ce0.
+    unit_length: S,
+    /// -k2 times the time step, per L_ce0/s and tick.
+    slope: S::Factor,
 }
 
+/// A strength (F0) that counts as none: its logarithm is still a number.
+const NO_STRENGTH: f64 = 1e-9;
+
 impl<S: Scalar> Compression<S> {
-    pub(crate) fn new(params: &CompressionParams) -> Self {
+    pub(crate) fn new(params: &CompressionParams, step: TimeStep) -> Self {
+        let strength = -params.strength;
+        let logarithm = Scalar::ln(Scalar::max(strength, NO_STRENGTH));
         Self {
-            strength: S::from_f64(params.strength),
-            steepness: S::from_f64(params.steepness),
-            onset_length: S::from_f64(params.onset_length),
+            strength: S::from_f64(strength),
+            steepness: S::factor(params.steepness),
+            unit_length: S::from_f64(params.onset_length - logarithm / params.steepness),
+            slope: S::factor(-params.steepness * step.seconds()),
         }
     }
 
-    /// Force (F0, never positive) and its slope (F0/L_ce0) at a fascicle length in L_ce0.
+    /// Force (F0, never positive) and its slope (F0 per L_ce0/s and tick) at a length in L_ce0.
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
-        let growth = (self.steepness * (fascicle_length - self.onset_length)).exp();
-        let force = self.strength * (growth - S::ONE);
-        let slope = self.strength * self.steepness * growth;
-        if force < S::ZERO { (force, slope) } else { (S::ZERO, S::ZERO) }
+        let grown = (fascicle_length - self.unit_length).scaled(&self.steepness).exp();
+        let force = self.strength - grown;
+        if force < S::ZERO { (force, grown.scaled(&self.slope)) } else { (S::ZERO, S::ZERO) }
     }
 }

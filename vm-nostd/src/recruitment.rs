@@ -34,7 +34,7 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        effective_activation: &mut S,
+        effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,

@@ -32,7 +32,7 @@ impl SagParams {
 
 /// Sag of one fibre type; S stays 1 for a type without it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sag<S> {
+pub(crate) struct Sag<S: Scalar> {
     pub(crate) resting_level: S,
     firing_level: S,
     lag: Lag<S>,
@@ -51,7 +51,7 @@ impl<S: Scalar> Sag<S> {
     }
 
     /// S at the tick's end, the type having been firing for a `share` (0..1) of it.
-    pub(crate) fn advance(&self, sag: S, share: S) -> S {
+    pub(crate) fn advance(&self, sag: S::Slow, share: S) -> S::Slow {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;
         self.lag.at_end(sag, target)
     }
@@ -63,6 +63,6 @@ pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
     if above_start == above_end {
         return if above_end { S::ONE } else { S::ZERO };
     }
-    let share_before = (level - start) / (end - start);
+    let share_before = (level - start).abs().ratio((end - start).abs());
     if above_end { S::ONE - share_before } else { share_before }
 }

@@ -1,19 +1,25 @@
 //! The arithmetic the model runs in.
 
-mod float;
+pub(crate) mod fixed;
+pub(crate) mod float;
 
 use core::fmt::Debug;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 
 pub(crate) mod sealed {
     /// Keeps [`Scalar`](super::Scalar) to the types whose accuracy is tested here.
     pub trait Sealed {}
 }
 
-/// A number the model can be computed in: `f32` on the target, `f64` for comparison.
+/// A number the model can be computed in: `f32` with a floating-point unit, [`Fixed`](crate::Fixed)
+/// without one, `f64` for comparison.
 ///
 /// The same source, compiled for any machine, gives the same bits: there is no contraction of
 /// `a * b + c`, and the kernels are portable code.
+///
+/// The equations are written once, over this trait. Where a fixed-point number could overflow or
+/// lose what is small, they use an operation that says so: [`scaled`](Scalar::scaled) by a constant
+/// of any magnitude, [`Slow`](Scalar::Slow) for what a lag moves, [`ratio`](Scalar::ratio).
 pub trait Scalar:
     sealed::Sealed
     + Copy
@@ -23,17 +29,38 @@ pub trait Scalar:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
-    + Div<Output = Self>
     + Neg<Output = Self>
     + 'static
 {
-    /// The word a value is saved in.
+    /// A word of a saved state.
     type Bits: Copy + Debug + Eq + Into<u64>;
+    /// A constant to multiply with, of any magnitude.
+    type Factor: Copy + Debug;
+    /// A value that a lag moves, by less in a tick than the number itself may resolve.
+    type Slow: Copy + Debug + PartialEq;
+    /// A share, 0..1, of the way that a lag has still to go.
+    type Share: Copy + Debug;
+    /// A musculotendon path length: m in floating point, µm in fixed point.
+    type PathLength: Copy + Debug + PartialEq + PartialOrd;
+    /// A stimulation frequency, pps.
+    type Frequency: Copy + Debug + PartialEq + PartialOrd;
+    /// A tendon force: N in floating point, mN in fixed point.
+    type Force: Copy + Debug + PartialEq + PartialOrd;
 
     /// 0.
     const ZERO: Self;
     /// 1.
     const ONE: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// The least positive value whose logarithm is taken.
+    const LEAST: Self;
+    /// No larger coefficient can be held.
+    const LARGEST_COEFFICIENT: f64;
+    /// The longest path that can be held, m.
+    const LONGEST_PATH: f64;
+    /// Words of a [`Slow`](Scalar::Slow) in a saved state.
+    const SLOW_WORDS: usize;
 
     /// The nearest value. Used when a muscle is built, never in a tick.
     fn from_f64(value: f64) -> Self;
@@ -45,14 +72,98 @@ pub trait Scalar:
     fn from_bits(bits: Self::Bits) -> Self;
     /// Neither infinite nor not-a-number.
     fn is_finite(self) -> bool;
-    /// e to the power of `self`; 0 far below, never an error.
+    /// The greatest value there is, at which fixed point saturates; infinity in floating point.
+    fn is_saturated(self) -> bool;
+
+    /// The factor nearest to a constant. Used when a muscle is built.
+    fn factor(value: f64) -> Self::Factor;
+    /// Times a constant; saturated where that is out of range.
+    #[must_use]
+    fn scaled(self, factor: &Self::Factor) -> Self;
+    /// The sum; saturated where that is out of range.
+    #[must_use]
+    fn saturating_add(self, other: Self) -> Self;
+    /// The product; saturated where that is out of range.
+    #[must_use]
+    fn saturating_mul(self, other: Self) -> Self;
+    /// Divided by a positive number; saturated where that is out of range.
+    #[must_use]
+    fn ratio(self, divisor: Self) -> Self;
+
+    /// e to the power of `self`; 0 far below, saturated far above, never an error.
+    #[must_use]
     fn exp(self) -> Self;
-    /// e to the power of `self`, less 1, accurate near 0.
-    fn exp_m1(self) -> Self;
     /// Natural logarithm of a positive number.
+    #[must_use]
     fn ln(self) -> Self;
-    /// Natural logarithm of 1 more than `self`, accurate near 0.
-    fn ln_1p(self) -> Self;
+    /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
+    fn softplus(self) -> (Self, Self);
+    /// Of `(1 + n self)/(1 + d self)`, whose denominator is positive: value, slope, half its
+    /// curvature.
+    fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self);
+    /// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's, from a residual `self`,
+    /// its positive slope and half its curvature.
+    #[must_use]
+    fn halley(self, slope: Self, half_curvature: Self) -> Self;
+
+    /// A slow value that is now `self`.
+    fn slow(self) -> Self::Slow;
+    /// What a slow value is now.
+    fn of(slow: Self::Slow) -> Self;
+    /// A slow value moved by `difference` times `share`.
+    fn moved(slow: Self::Slow, difference: Self, share: Self::Share) -> Self::Slow;
+    /// A slow value moved by the sum of two differences times their shares.
+    fn moved_by_two(
+        slow: Self::Slow,
+        first: (Self, Self::Share),
+        second: (Self, Self::Share),
+    ) -> Self::Slow;
+    /// The share nearest to a constant, 0..1. Used when a muscle is built.
+    fn share(value: f64) -> Self::Share;
+    /// What two lags in a row, each x = `self` time constants long, have done after half of that
+    /// and after all of it.
+    fn lags(self) -> [Lags<Self::Share>; 2];
+    /// The words of a slow value.
+    fn slow_words(slow: Self::Slow) -> impl Iterator<Item = Self::Bits>;
+    /// The slow value whose words come next; none if there are too few.
+    fn slow_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self::Slow>;
+
+    /// The path length nearest to one in m. Not used in a tick.
+    fn path_length(metres: f64) -> Self::PathLength;
+    /// A path length in m, exactly or as nearly as `f64` has it.
+    fn path_metres(path: Self::PathLength) -> f64;
+    /// Neither infinite nor not-a-number.
+    fn path_is_finite(path: Self::PathLength) -> bool;
+    /// The factor that turns path lengths into numbers: `value` per m.
+    fn per_metre(value: f64) -> Self::Factor;
+    /// How much longer `path` is than `other`, times a factor per m.
+    fn path_difference(
+        path: Self::PathLength,
+        other: Self::PathLength,
+        per_metre: &Self::Factor,
+    ) -> Self;
+    /// The word of a path length.
+    fn path_bits(path: Self::PathLength) -> Self::Bits;
+    /// The path length whose word is `bits`.
+    fn path_from_bits(bits: Self::Bits) -> Self::PathLength;
+
+    /// The frequency nearest to one in pps. Not used in a tick.
+    fn frequency(pps: f64) -> Self::Frequency;
+    /// Neither infinite nor not-a-number.
+    fn frequency_is_finite(frequency: Self::Frequency) -> bool;
+    /// The factor that turns frequencies into numbers: `value` per pps.
+    fn per_pps(value: f64) -> Self::Factor;
+    /// A frequency times a factor per pps.
+    fn of_frequency(frequency: Self::Frequency, per_pps: &Self::Factor) -> Self;
+
+    /// The factor that turns forces relative to F0 (N) into forces.
+    fn force_factor(newtons: f64) -> Self::Factor;
+    /// A force relative to F0 as a force.
+    fn force(self, force_factor: &Self::Factor) -> Self::Force;
+    /// The word of a force.
+    fn force_bits(force: Self::Force) -> Self::Bits;
+    /// A force in N, exactly or as nearly as `f64` has it.
+    fn newtons(force: Self::Force) -> f64;
 
     /// The smaller of two ordered values; `other` where `self` is not-a-number.
     #[must_use]
@@ -71,4 +182,13 @@ pub trait Scalar:
     fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
     }
+}
+
+/// What two lags in a row have done, each x time constants long.
+#[derive(Clone, Copy, Debug)]
+pub struct Lags<T> {
+    /// 1 - exp(-x): how far either has come towards its target.
+    pub done: T,
+    /// x exp(-x): what the second still misses of the way because the first was behind.
+    pub delayed: T,
 }

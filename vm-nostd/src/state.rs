@@ -1,6 +1,6 @@
 //! Everything of a muscle that changes from tick to tick.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, Range};
 use crate::scalar::Scalar;
 use crate::tendon::Tendon;
 use core::fmt;
@@ -11,32 +11,32 @@ use core::marker::PhantomData;
 /// [`words`](Self::words) gives its bits, for storage and comparison, and
 /// [`Muscle::restore`](crate::Muscle::restore) takes them back after checking them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<S, R, const N: usize> {
-    /// (L_se - LrT)/kT: how far the tendon is extended beyond slack, in widths of its toe.
+pub struct State<S: Scalar, R, const N: usize> {
+    /// (L_se - LrT) L_se0/L_ce0: how far the tendon is extended beyond slack, in L_ce0.
     pub(crate) tendon_extension: S,
     /// V, L_ce0/s.
     pub(crate) fascicle_velocity: S,
-    /// L_mt at the end of the last tick, m.
-    pub(crate) path_length: S,
+    /// L_mt at the end of the last tick.
+    pub(crate) path_length: S::PathLength,
     /// U_eff, 0..1; stays 0 in intramuscular FES.
-    pub(crate) effective_activation: S,
+    pub(crate) effective_activation: S::Slow,
     pub(crate) fibers: [FiberState<S>; N],
     pub(crate) recruitment: PhantomData<R>,
 }
 
 /// The part of the state that each fibre type has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FiberState<S> {
+pub struct FiberState<S: Scalar> {
     /// f_int, f0.5 (intramuscular FES: intermediate recruitment, 0..1).
-    pub(crate) intermediate_frequency: S,
+    pub(crate) intermediate_frequency: S::Slow,
     /// f_eff, f0.5 (intramuscular FES: recruitment, 0..1).
-    pub(crate) effective_frequency: S,
+    pub(crate) effective_frequency: S::Slow,
     /// Y, 0..1.
-    pub(crate) yielding: S,
+    pub(crate) yielding: S::Slow,
     /// Where Y tends to at the present velocity, 0..1.
     pub(crate) yielding_target: S,
     /// S.
-    pub(crate) sag: S,
+    pub(crate) sag: S::Slow,
     /// Af that the last tick foresaw for the middle of the next, 0..1.
     pub(crate) activation: S,
 }
@@ -44,11 +44,11 @@ pub struct FiberState<S> {
 impl<S: Scalar> FiberState<S> {
     pub(crate) fn at_rest(sag: S) -> Self {
         Self {
-            intermediate_frequency: S::ZERO,
-            effective_frequency: S::ZERO,
-            yielding: S::ONE,
+            intermediate_frequency: S::ZERO.slow(),
+            effective_frequency: S::ZERO.slow(),
+            yielding: S::ONE.slow(),
             yielding_target: S::ONE,
-            sag,
+            sag: sag.slow(),
             activation: S::ZERO,
         }
     }
@@ -83,12 +83,9 @@ impl fmt::Display for RestoreError {
 
 impl core::error::Error for RestoreError {}
 
-const OF_MUSCLE: usize = 4;
-const PER_FIBER: usize = 6;
-
 impl<S: Scalar, R, const N: usize> State<S, R, N> {
     /// How many words the state is saved in.
-    pub const WORDS: usize = OF_MUSCLE + PER_FIBER * N;
+    pub const WORDS: usize = 3 + S::SLOW_WORDS + N * (2 + 4 * S::SLOW_WORDS);
 
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
     pub fn fascicle_velocity(&self) -> S {
@@ -97,23 +94,22 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
 
     /// Effective activation U_eff, 0..1, of natural continuous recruitment.
     pub fn effective_activation(&self) -> S {
-        self.effective_activation
+        S::of(self.effective_activation)
     }
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
-    /// extension (kT), fascicle velocity (L_ce0/s), path length (m), effective activation; then of
-    /// each type f_int, f_eff, Y, the target of Y, S, and the Af foreseen for the next tick.
+    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length, effective activation; then of
+    /// each type f_int, f_eff, Y, S, the target of Y, and the Af foreseen for the next tick.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
-            self.tendon_extension,
-            self.fascicle_velocity,
-            self.path_length,
-            self.effective_activation,
+            self.tendon_extension.to_bits(),
+            self.fascicle_velocity.to_bits(),
+            S::path_bits(self.path_length),
         ];
         of_muscle
             .into_iter()
-            .chain(self.fibers.into_iter().flat_map(|f| f.values()))
-            .map(S::to_bits)
+            .chain(S::slow_words(self.effective_activation))
+            .chain(self.fibers.into_iter().flat_map(FiberState::words))
     }
 
     /// The state whose bits are `words`, if every value is one that a tick can leave behind.
@@ -122,24 +118,14 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
         domain: &Domain<S>,
         tendon: &Tendon<S>,
     ) -> Result<Self, RestoreError> {
-        let mut words = words.into_iter();
-        let mut count = 0;
-        let mut next = |within: &dyn Fn(S) -> bool| {
-            let length = RestoreError::Length { expected: Self::WORDS };
-            let value = S::from_bits(words.next().ok_or(length)?);
-            if !within(value) {
-                return Err(RestoreError::Value { word: count });
-            }
-            count += 1;
-            Ok(value)
-        };
-        let share = |value: S| value >= S::ZERO && value <= S::ONE;
-        let level = |value: S| value >= S::ZERO && value <= S::from_f64(1e3);
+        let mut saved = Saved { words: words.into_iter(), count: 0, expected: Self::WORDS };
+        let share = Range { least: S::ZERO, most: S::ONE };
+        let level = Range { least: S::ZERO, most: S::from_f64(MOST_LEVEL) };
         let mut state = Self {
-            tendon_extension: next(&|value| value.is_finite())?,
-            fascicle_velocity: next(&|value| domain.fascicle_velocity.contains(value))?,
-            path_length: next(&|value| domain.path_length.contains(value))?,
-            effective_activation: next(&share)?,
+            tendon_extension: saved.number(S::is_finite)?,
+            fascicle_velocity: saved.number(|value| domain.fascicle_velocity.contains(value))?,
+            path_length: saved.path::<S>(&domain.path_length)?,
+            effective_activation: saved.slow(&share)?,
             fibers: [FiberState::at_rest(S::ONE); N],
             recruitment: PhantomData,
         };
@@ -151,30 +137,86 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
         }
         for fiber in &mut state.fibers {
             *fiber = FiberState {
-                intermediate_frequency: next(&level)?,
-                effective_frequency: next(&level)?,
-                yielding: next(&share)?,
-                yielding_target: next(&share)?,
-                sag: next(&level)?,
-                activation: next(&share)?,
+                intermediate_frequency: saved.slow(&level)?,
+                effective_frequency: saved.slow(&level)?,
+                yielding: saved.slow(&share)?,
+                sag: saved.slow(&level)?,
+                yielding_target: saved.number(|value| share.contains(value))?,
+                activation: saved.number(|value| share.contains(value))?,
             };
         }
-        if words.next().is_some() {
-            return Err(RestoreError::Length { expected: Self::WORDS });
+        if saved.words.next().is_some() {
+            return Err(saved.length());
         }
         Ok(state)
     }
 }
 
+/// No frequency (f0.5) and no level of sag is above this.
+const MOST_LEVEL: f64 = 100.0;
+
+/// Words that are being read.
+struct Saved<I> {
+    words: I,
+    /// How many were read.
+    count: usize,
+    expected: usize,
+}
+
+impl<I> Saved<I> {
+    fn length(&self) -> RestoreError {
+        RestoreError::Length { expected: self.expected }
+    }
+
+    /// A value of so many words, refused if it is not one the muscle can have.
+    fn checked<T>(
+        &mut self,
+        value: Option<T>,
+        words: usize,
+        valid: impl FnOnce(&T) -> bool,
+    ) -> Result<T, RestoreError> {
+        let value = value.ok_or_else(|| self.length())?;
+        if !valid(&value) {
+            return Err(RestoreError::Value { word: self.count });
+        }
+        self.count += words;
+        Ok(value)
+    }
+
+    fn number<S: Scalar>(&mut self, valid: impl Fn(S) -> bool) -> Result<S, RestoreError>
+    where
+        I: Iterator<Item = S::Bits>,
+    {
+        let value = self.words.next().map(S::from_bits);
+        self.checked(value, 1, |value| valid(*value))
+    }
+
+    fn path<S: Scalar>(
+        &mut self,
+        range: &Range<S::PathLength>,
+    ) -> Result<S::PathLength, RestoreError>
+    where
+        I: Iterator<Item = S::Bits>,
+    {
+        let value = self.words.next().map(S::path_from_bits);
+        self.checked(value, 1, |value| range.contains(*value))
+    }
+
+    fn slow<S: Scalar>(&mut self, range: &Range<S>) -> Result<S::Slow, RestoreError>
+    where
+        I: Iterator<Item = S::Bits>,
+    {
+        let value = S::slow_from_words(&mut self.words);
+        self.checked(value, S::SLOW_WORDS, |value| range.contains(S::of(*value)))
+    }
+}
+
 impl<S: Scalar> FiberState<S> {
-    fn values(self) -> [S; PER_FIBER] {
-        [
-            self.intermediate_frequency,
-            self.effective_frequency,
-            self.yielding,
-            self.yielding_target,
-            self.sag,
-            self.activation,
-        ]
+    fn words(self) -> impl Iterator<Item = S::Bits> {
+        S::slow_words(self.intermediate_frequency)
+            .chain(S::slow_words(self.effective_frequency))
+            .chain(S::slow_words(self.yielding))
+            .chain(S::slow_words(self.sag))
+            .chain([self.yielding_target.to_bits(), self.activation.to_bits()])
     }
 }

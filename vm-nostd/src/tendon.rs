@@ -2,7 +2,8 @@
 
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
-use crate::softplus::softplus;
+use crate::scalar::float::one_minus_exp;
+use crate::time_step::TimeStep;
 
 /// Coefficients of the series elastic element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,66 +30,77 @@ impl TendonParams {
     pub(crate) fn length_at(&self, force: f64) -> f64 {
         // ln(exp(x) - 1), without overflow.
         let x = force / (self.stiffness * self.toe);
-        self.toe * (x + Scalar::ln(-Scalar::exp_m1(-x))) + self.slack_length
+        self.toe * (x + Scalar::ln(one_minus_exp(x))) + self.slack_length
     }
 }
 
-/// The tendon of one muscle. Its extension is counted beyond slack and in widths of the toe:
-/// (L_se - LrT)/kT.
+/// The tendon of one muscle. Its extension beyond slack is counted in L_ce0, as lengths of the
+/// fascicles are.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tendon<S> {
-    /// 1/(kT L_se0), per m of path.
-    per_path: S,
-    /// L_ce0/(kT L_se0), per L_ce0 of fascicle.
-    per_fascicle: S,
-    /// kT L_se0/L_ce0, L_ce0 of fascicle per extension.
-    fascicle_per_extension: S,
-    /// 1/L_ce0, and LrT L_se0/L_ce0.
-    fascicle_per_path: S,
-    slack: S,
+pub(crate) struct Tendon<S: Scalar> {
+    /// LrT L_se0: the path that the slack tendon takes up.
+    slack_path: S::PathLength,
+    /// 1/L_ce0, per m.
+    per_path: S::Factor,
+    /// L_ce0/(kT L_se0).
+    per_toe: S::Factor,
     /// cT kT, F0.
-    force: S,
-    /// cT L_ce0/L_se0, F0 per L_ce0 of fascicle.
-    stiffness: S,
+    force: S::Factor,
+    /// cT L_ce0/L_se0 times the time step, F0 per L_ce0/s and tick.
+    stiffness: S::Factor,
+}
+
+/// What a tendon does at an extension.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull<S> {
+    /// F0.
+    pub(crate) force: S,
+    /// How much less it is per tick that the fascicles lengthen at 1 L_ce0/s, F0.
+    pub(crate) stiffness: S,
+    /// The extension is beyond what can be told.
+    pub(crate) saturated: bool,
 }
 
 impl<S: Scalar> Tendon<S> {
-    pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {
+    pub(crate) fn new(
+        params: &TendonParams,
+        fascicle_length: f64,
+        tendon_length: f64,
+        step: TimeStep,
+    ) -> Self {
         let ratio = fascicle_length / tendon_length;
         Self {
-            per_path: S::from_f64(1.0 / (params.toe * tendon_length)),
-            per_fascicle: S::from_f64(ratio / params.toe),
-            fascicle_per_extension: S::from_f64(params.toe / ratio),
-            fascicle_per_path: S::from_f64(1.0 / fascicle_length),
-            slack: S::from_f64(params.slack_length / ratio),
-            force: S::from_f64(params.stiffness * params.toe),
-            stiffness: S::from_f64(params.stiffness * ratio),
+            slack_path: S::path_length(params.slack_length * tendon_length),
+            per_path: S::per_metre(1.0 / fascicle_length),
+            per_toe: S::factor(ratio / params.toe),
+            force: S::factor(params.stiffness * params.toe),
+            stiffness: S::factor(params.stiffness * ratio * step.seconds()),
         }
     }
 
-    /// Change of extension when the path becomes longer by `path` m.
-    pub(crate) fn stretch(&self, path: S) -> S {
-        path * self.per_path
+    /// Change of extension when the path changes from `before` to `after`.
+    pub(crate) fn stretch(&self, before: S::PathLength, after: S::PathLength) -> S {
+        S::path_difference(after, before, &self.per_path)
     }
 
-    /// Extension after the fascicles have become longer by `lengthening` L_ce0.
-    pub(crate) fn give(&self, extension: S, lengthening: S) -> S {
-        extension - lengthening * self.per_fascicle
+    /// Extension that leaves the fascicles `length` (L_ce0) on a path.
+    pub(crate) fn extension(&self, path: S::PathLength, length: S) -> S {
+        S::path_difference(path, self.slack_path, &self.per_path) - length
     }
 
-    /// Extension that leaves the fascicles `length` (L_ce0) on a path of `path` m.
-    pub(crate) fn extension(&self, path: S, length: S) -> S {
-        (path * self.fascicle_per_path - self.slack - length) * self.per_fascicle
+    /// Fascicle length (L_ce0) on a path with the tendon at an extension.
+    pub(crate) fn fascicle_length(&self, path: S::PathLength, extension: S) -> S {
+        S::path_difference(path, self.slack_path, &self.per_path) - extension
     }
 
-    /// Fascicle length (L_ce0) on a path of `path` m with the tendon at an extension.
-    pub(crate) fn fascicle_length(&self, path: S, extension: S) -> S {
-        path * self.fascicle_per_path - self.slack - extension * self.fascicle_per_extension
-    }
-
-    /// Force (F0) at an extension, and by how much it falls per L_ce0 of fascicle length.
-    pub(crate) fn pull(&self, extension: S) -> (S, S) {
-        let (value, slope) = softplus(extension);
-        (self.force * value, self.stiffness * slope)
+    /// Force and stiffness at an extension (L_ce0).
+    pub(crate) fn pull(&self, extension: S) -> Pull<S> {
+        let toes = extension.scaled(&self.per_toe);
+        let (value, slope) = toes.softplus();
+        Pull {
+            force: value.scaled(&self.force),
+            stiffness: slope.scaled(&self.stiffness),
+            saturated: toes.is_saturated(),
+        }
     }
 }

@@ -30,10 +30,10 @@ impl YieldParams {
 
 /// Yield of one fibre type; Y stays 1 for a type without it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Yielding<S> {
+pub(crate) struct Yielding<S: Scalar> {
     depth: S,
     /// 1/VY.
-    per_velocity: S,
+    per_velocity: S::Factor,
     lag: Lag<S>,
 }
 
@@ -43,18 +43,18 @@ impl<S: Scalar> Yielding<S> {
             params.map_or((0.0, 1.0, 1.0), |p| (p.depth, p.velocity, p.time_constant));
         Self {
             depth: S::from_f64(depth),
-            per_velocity: S::from_f64(1.0 / velocity),
+            per_velocity: S::factor(1.0 / velocity),
             lag: Lag::new(time_constant, step),
         }
     }
 
     /// Where Y tends to at a fascicle velocity in L_ce0/s.
     pub(crate) fn target(&self, velocity: S) -> S {
-        S::ONE - self.depth * (S::ONE - (-(velocity.abs() * self.per_velocity)).exp())
+        S::ONE - self.depth * (S::ONE - (-velocity.abs().scaled(&self.per_velocity)).exp())
     }
 
     /// Y at the tick's end, given the mean of its target over the tick.
-    pub(crate) fn advance(&self, yielding: S, target: S) -> S {
+    pub(crate) fn advance(&self, yielding: S::Slow, target: S) -> S::Slow {
         self.lag.at_end(yielding, target)
     }
 }

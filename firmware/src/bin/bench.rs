@@ -13,31 +13,31 @@ use cortex_m_semihosting::debug;
 use firmware::MUSCLE;
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, Input, IntramuscularFes, NaturalContinuous, Output,
-    ParameterError, State, TimeStep,
+    Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Output, ParameterError, Recruitment,
+    Scalar, State, TimeStep,
 };
 
 static INPUTS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/bench_inputs.bin"));
 
 // What is measured: one tick each.
 
-#[inline(never)]
-fn step_continuous_f32(
-    muscle: &ContinuousMuscle<f32, 2>,
-    state: &mut State<f32, NaturalContinuous, 2>,
-    input: Input<f32>,
-) -> Output<f32> {
-    muscle.step(state, input)
+/// A tick of the model, under a name of its own for each mode and arithmetic.
+macro_rules! step {
+    ($name:ident, $scalar:ty, $mode:ty) => {
+        #[inline(never)]
+        fn $name(
+            muscle: &Muscle<$scalar, $mode, 2>,
+            state: &mut State<$scalar, $mode, 2>,
+            input: Input<$scalar>,
+        ) -> Output<$scalar> {
+            muscle.step(state, input)
+        }
+    };
 }
-
-#[inline(never)]
-fn step_fes_f32(
-    muscle: &FesMuscle<f32, 2>,
-    state: &mut State<f32, IntramuscularFes, 2>,
-    input: Input<f32>,
-) -> Output<f32> {
-    muscle.step(state, input)
-}
+step!(step_continuous_f32, f32, NaturalContinuous);
+step!(step_fes_f32, f32, IntramuscularFes);
+step!(step_continuous_fixed, Fixed, NaturalContinuous);
+step!(step_fes_fixed, Fixed, IntramuscularFes);
 
 /// A tick of the literal port, under a name of its own for each mode and precision.
 macro_rules! literal {
@@ -103,19 +103,38 @@ fn drive<M, O>(
 }
 
 fn drive_all() -> Result<(), ParameterError> {
-    let continuous = ContinuousMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND)?;
-    let fes = FesMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND)?;
+    model(0, step_continuous_f32)?;
+    model(1, step_fes_f32)?;
+    model(2, step_continuous_fixed)?;
+    model(3, step_fes_fixed)?;
+    literal(4, literal_continuous_f32)?;
+    literal(5, literal_fes_f32)?;
+    literal(6, literal_continuous_f64)?;
+    literal(7, literal_fes_f64)?;
+    drive(8, |_| Ok(()), |(), input| kernels_f32(input))
+}
+
+/// What steps a muscle.
+type Step<S, R> = fn(&Muscle<S, R, 2>, &mut State<S, R, 2>, Input<S>) -> Output<S>;
+
+/// Drives the model.
+fn model<S: Scalar, R: Recruitment<S, 2>>(
+    case: u32,
+    step: Step<S, R>,
+) -> Result<(), ParameterError> {
+    let muscle = Muscle::<S, R, 2>::build(&MUSCLE, TimeStep::MILLISECOND)?;
     drive(
-        0,
-        |path| continuous.rest(path),
-        |state, input| step_continuous_f32(black_box(&continuous), state, input),
-    )?;
-    drive(1, |path| fes.rest(path), |state, input| step_fes_f32(black_box(&fes), state, input))?;
-    literal(2, literal_continuous_f32)?;
-    literal(3, literal_fes_f32)?;
-    literal(4, literal_continuous_f64)?;
-    literal(5, literal_fes_f64)?;
-    drive(6, |_| Ok(()), |(), input| kernels_f32(input))
+        case,
+        |path| muscle.rest(S::path_length(path.into())),
+        |state, input| {
+            let input = Input {
+                activation: S::from_f64(input.activation.into()),
+                path_length: S::path_length(input.path_length.into()),
+                stimulation_frequency: S::frequency(input.stimulation_frequency.into()),
+            };
+            step(black_box(&muscle), state, black_box(input))
+        },
+    )
 }
 
 /// Drives a literal port.

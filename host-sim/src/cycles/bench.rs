@@ -31,7 +31,7 @@ pub fn measure(
     let folder = tempfile::tempdir()?;
     let inputs = folder.path().join("inputs.bin");
     std::fs::write(&inputs, encode(runs))?;
-    let path = target::build("bench", &[("VM_BENCH_INPUTS", &inputs)])?;
+    let path = target::build(target::STM32F405, "bench", &[("VM_BENCH_INPUTS", &inputs)])?;
     let image = Image::read(&path).map_err(FollowError::from)?;
     let functions: Vec<&str> = cases.iter().map(|case| case.function).collect();
     let followed = follow(&image, &Program::on_board(&path), tracer, &functions, count)?;

@@ -34,8 +34,8 @@ pub struct Case {
 }
 
 /// Every case, in the order of the bench.
-pub const CASES: [Case; 7] = {
-    use Arithmetic::{F32, F64};
+pub const CASES: [Case; 9] = {
+    use Arithmetic::{F32, F64, Fixed};
     use Mode::{Continuous, Fes};
     use Subject::{Kernels, Literal, Model};
     const fn case(
@@ -51,6 +51,8 @@ pub const CASES: [Case; 7] = {
     [
         case("continuous-f32", "step_continuous_f32", Model(Continuous, F32), None),
         case("fes-f32", "step_fes_f32", Model(Fes, F32), None),
+        case("continuous-fixed", "step_continuous_fixed", Model(Continuous, Fixed), None),
+        case("fes-fixed", "step_fes_fixed", Model(Fes, Fixed), None),
         case("literal-continuous-f32", "literal_continuous_f32", Literal(Continuous, F32), some),
         case("literal-fes-f32", "literal_fes_f32", Literal(Fes, F32), some),
         case("literal-continuous-f64", "literal_continuous_f64", Literal(Continuous, F64), few),
@@ -96,6 +98,9 @@ impl Case {
         let bytes = match (self.subject, self.arithmetic()) {
             (Subject::Kernels, _) => 0,
             (Subject::Model(..), Arithmetic::F64) => size_of::<State<f64, NaturalContinuous, 2>>(),
+            (Subject::Model(..), Arithmetic::Fixed) => {
+                size_of::<State<vm_nostd::Fixed, NaturalContinuous, 2>>()
+            }
             (Subject::Model(..), _) => size_of::<State<f32, NaturalContinuous, 2>>(),
             (Subject::Literal(..), Arithmetic::F64) => size_of::<LiteralMuscle<f64>>(),
             (Subject::Literal(..), _) => size_of::<LiteralMuscle<f32>>(),

@@ -151,7 +151,7 @@ pub fn of_image(
 }
 
 /// The machine that images run on if no other is named.
-pub const MACHINE: &str = target::MACHINE;
+pub const MACHINE: &str = target::STM32F405.machine;
 
 #[cfg(test)]
 mod tests {

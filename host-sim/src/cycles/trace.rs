@@ -72,7 +72,7 @@ pub struct Program<'a> {
 impl<'a> Program<'a> {
     /// An image made for the board of the firmware.
     pub fn on_board(image: &'a Path) -> Self {
-        Self { image, machine: target::MACHINE, arguments: Vec::new() }
+        Self { image, machine: target::STM32F405.machine, arguments: Vec::new() }
     }
 }
 

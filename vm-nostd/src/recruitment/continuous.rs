@@ -33,7 +33,7 @@ const RISE_TIME: f64 = 0.03;
 const FALL_TIME: f64 = 0.15;
 
 #[derive(Clone, Copy, Debug)]
-pub struct Coefficients<S, const N: usize> {
+pub struct Coefficients<S: Scalar, const N: usize> {
     rise: Lag<S>,
     fall: Lag<S>,
     firing: S,
@@ -92,7 +92,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        effective_activation: &mut S,
+        effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,
@@ -100,10 +100,11 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         let activation = input.activation;
         let start = *effective_activation;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
-        let lag = if activation >= start { &self.rise } else { &self.fall };
+        let lag = if activation >= S::of(start) { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
         let end = lag.at_end(start, activation);
         *effective_activation = end;
+        let change = S::of(end) - S::of(start);
 
         let (mut sum, mut count) = (S::ZERO, S::ZERO);
         for unit in &self.units {
@@ -113,7 +114,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             }
         }
         // At its own threshold a single type carries everything, whatever the excess.
-        let per_sum = if sum > S::ZERO { S::ONE / sum } else { S::ZERO };
+        let of_sum = |value: S| if sum > S::ZERO { value.ratio(sum) } else { S::ZERO };
+        let relative_change = of_sum(change);
 
         let mut recruited = [Recruited {
             frequency: Course::constant(S::ZERO),
@@ -139,18 +141,18 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
             let weight = if middle >= unit.threshold {
                 let excess = middle - unit.threshold;
-                let value = middle * excess * per_sum;
-                let slope = (middle + excess - count * value) * per_sum;
-                Course { middle: value, change: slope * (end - start) }
+                let value = middle * of_sum(excess);
+                let slope = middle + excess - count * value;
+                Course { middle: value, change: slope.saturating_mul(relative_change) }
             } else {
                 Course::constant(S::ZERO)
             };
             *result = Recruited {
                 frequency: Course {
                     middle: excited.effective_at_middle,
-                    change: excited.effective - before,
+                    change: S::of(excited.effective) - S::of(before),
                 },
-                firing: share_above(before, excited.effective, self.firing),
+                firing: share_above(S::of(before), S::of(excited.effective), self.firing),
                 weight,
                 compression_weight: weight,
             };

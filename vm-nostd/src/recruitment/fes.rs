@@ -25,16 +25,16 @@ impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Coefficients<S, const N: usize> {
+pub struct Coefficients<S: Scalar, const N: usize> {
     firing: S,
     units: [Unit<S>; N],
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Unit<S> {
+struct Unit<S: Scalar> {
     fraction: S,
     /// 1/f0.5, s.
-    per_half_force_frequency: S,
+    per_half_force_frequency: S::Factor,
 }
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
@@ -45,7 +45,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             firing: S::from_f64(SagParams::FIRING),
             units: params.fibers.map(|fiber| Unit {
                 fraction: S::from_f64(fiber.fraction),
-                per_half_force_frequency: S::from_f64(1.0 / fiber.fiber_type.half_force_frequency),
+                per_half_force_frequency: S::per_pps(1.0 / fiber.fiber_type.half_force_frequency),
             }),
         }
     }
@@ -53,7 +53,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
-        _effective_activation: &mut S,
+        _effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
         input: &Input<S>,
         fascicle_length: S,
@@ -68,7 +68,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         for (((result, unit), fiber), excitation) in
             recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
         {
-            let frequency = input.stimulation_frequency * unit.per_half_force_frequency;
+            let frequency =
+                S::of_frequency(input.stimulation_frequency, &unit.per_half_force_frequency);
             let before = fiber.effective_frequency;
             let excited = excitation.advance(
                 (fiber.intermediate_frequency, before),
@@ -84,7 +85,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 firing: if frequency > self.firing { S::ONE } else { S::ZERO },
                 weight: Course {
                     middle: unit.fraction * excited.effective_at_middle,
-                    change: unit.fraction * (excited.effective - before),
+                    change: unit.fraction * (S::of(excited.effective) - S::of(before)),
                 },
                 compression_weight: Course::constant(unit.fraction),
             };

@@ -1,16 +1,28 @@
 //! Floating point: kernels from `libm`, the same portable code on host and target.
 
-use super::Scalar;
 use super::sealed::Sealed;
+use super::{Lags, Scalar};
 
 macro_rules! float {
-    ($float:ty, $bits:ty, $exp:path, $exp_m1:path, $ln:path, $ln_1p:path) => {
+    ($float:ty, $bits:ty, $least:expr, $exp:path, $exp_m1:path, $ln:path, $ln_1p:path) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
             type Bits = $bits;
+            type Factor = Self;
+            type Slow = Self;
+            type Share = Self;
+            type PathLength = Self;
+            type Frequency = Self;
+            type Force = Self;
+
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
+            const LEAST: Self = $least;
+            const LARGEST_COEFFICIENT: f64 = f64::MAX;
+            const LONGEST_PATH: f64 = f64::MAX;
+            const SLOW_WORDS: usize = 1;
 
             fn from_f64(value: f64) -> Self {
                 value as Self
@@ -27,21 +39,140 @@ macro_rules! float {
             fn is_finite(self) -> bool {
                 <$float>::is_finite(self)
             }
+            fn is_saturated(self) -> bool {
+                self == Self::INFINITY
+            }
+
+            fn factor(value: f64) -> Self {
+                value as Self
+            }
+            fn scaled(self, factor: &Self) -> Self {
+                self * factor
+            }
+            fn saturating_add(self, other: Self) -> Self {
+                self + other
+            }
+            fn saturating_mul(self, other: Self) -> Self {
+                self * other
+            }
+            fn ratio(self, divisor: Self) -> Self {
+                self / divisor
+            }
+
             fn exp(self) -> Self {
                 $exp(self)
-            }
-            fn exp_m1(self) -> Self {
-                $exp_m1(self)
             }
             fn ln(self) -> Self {
                 $ln(self)
             }
-            fn ln_1p(self) -> Self {
-                $ln_1p(self)
+            fn softplus(self) -> (Self, Self) {
+                // One exponential, and no overflow.
+                let decay = $exp(-Scalar::abs(self));
+                // Far below 0 the value itself is tiny, and what balances two such forces is
+                // their ratio.
+                let tail = $ln_1p(decay);
+                let share = 1.0 / (1.0 + decay);
+                if self > 0.0 { (self + tail, share) } else { (tail, decay * share) }
+            }
+            fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
+                let reciprocal = 1.0 / (1.0 + d * self);
+                let value = (1.0 + n * self) * reciprocal;
+                let slope = (n - d) * (reciprocal * reciprocal);
+                (value, slope, -(d * slope * reciprocal))
+            }
+            fn halley(self, slope: Self, half_curvature: Self) -> Self {
+                let square = slope * slope;
+                let reduced = square - self * half_curvature;
+                self * slope / Scalar::max(reduced, square * 0.5)
+            }
+
+            fn slow(self) -> Self {
+                self
+            }
+            fn of(slow: Self) -> Self {
+                slow
+            }
+            fn moved(slow: Self, difference: Self, share: Self) -> Self {
+                slow + difference * share
+            }
+            fn moved_by_two(slow: Self, first: (Self, Self), second: (Self, Self)) -> Self {
+                // In changes, not in values: a slow lag's are far below the values' last bits.
+                slow + (first.0 * first.1 + second.0 * second.1)
+            }
+            fn share(value: f64) -> Self {
+                value as Self
+            }
+            fn lags(self) -> [Lags<Self>; 2] {
+                let half = self * 0.5;
+                let done_by_half = -$exp_m1(-half);
+                let done = done_by_half * (2.0 - done_by_half);
+                [
+                    Lags { done: done_by_half, delayed: half * (1.0 - done_by_half) },
+                    Lags { done, delayed: self * (1.0 - done) },
+                ]
+            }
+            fn slow_words(slow: Self) -> impl Iterator<Item = Self::Bits> {
+                core::iter::once(slow.to_bits())
+            }
+            fn slow_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
+                words.next().map(<$float>::from_bits)
+            }
+
+            fn path_length(metres: f64) -> Self {
+                metres as Self
+            }
+            fn path_metres(path: Self) -> f64 {
+                f64::from(path)
+            }
+            fn path_is_finite(path: Self) -> bool {
+                path.is_finite()
+            }
+            fn per_metre(value: f64) -> Self {
+                value as Self
+            }
+            fn path_difference(path: Self, other: Self, per_metre: &Self) -> Self {
+                (path - other) * per_metre
+            }
+            fn path_bits(path: Self) -> Self::Bits {
+                path.to_bits()
+            }
+            fn path_from_bits(bits: Self::Bits) -> Self {
+                <$float>::from_bits(bits)
+            }
+
+            fn frequency(pps: f64) -> Self {
+                pps as Self
+            }
+            fn frequency_is_finite(frequency: Self) -> bool {
+                frequency.is_finite()
+            }
+            fn per_pps(value: f64) -> Self {
+                value as Self
+            }
+            fn of_frequency(frequency: Self, per_pps: &Self) -> Self {
+                frequency * per_pps
+            }
+
+            fn force_factor(newtons: f64) -> Self {
+                newtons as Self
+            }
+            fn force(self, force_factor: &Self) -> Self {
+                self * force_factor
+            }
+            fn force_bits(force: Self) -> Self::Bits {
+                force.to_bits()
+            }
+            fn newtons(force: Self) -> f64 {
+                f64::from(force)
             }
         }
     };
 }
 
-float!(f32, u32, libm::expf, libm::expm1f, libm::logf, libm::log1pf);
-float!(f64, u64, libm::exp, libm::expm1, libm::log, libm::log1p);
+float!(f32, u32, 1e-36, libm::expf, libm::expm1f, libm::logf, libm::log1pf);
+float!(f64, u64, 1e-36, libm::exp, libm::expm1, libm::log, libm::log1p);
+
+/// 1 - exp(-x) in `f64`, accurate near 0, for what is computed when a muscle is built.
+pub(crate) fn one_minus_exp(x: f64) -> f64 {
+    -libm::expm1(-x)
+}

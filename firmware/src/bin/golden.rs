@@ -1,0 +1,65 @@
+//! The rig run through the scenario as fast as the core can, on any Cortex-M that has semihosting
+//! and 16 KiB of RAM: first in fixed point, then in `f32`. The bits of every tick go to standard
+//! output as little-endian words.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+use cortex_m_semihosting::debug;
+use cortex_m_semihosting::hio::{self, HostStream};
+use firmware::{Arithmetic, Record, Rig, Scenario, TICKS};
+use vm_nostd::Fixed;
+
+/// Words that go to the host at once.
+const CHUNK: usize = 64;
+
+/// Sends words to the host.
+struct Outlet {
+    host: HostStream,
+    failed: bool,
+}
+
+impl Record for Outlet {
+    fn record(&mut self, mut words: impl Iterator<Item = u32>) {
+        let mut bytes = [0; 4 * CHUNK];
+        loop {
+            let mut length = 0;
+            for (place, word) in bytes.chunks_exact_mut(4).zip(&mut words) {
+                place.copy_from_slice(&word.to_le_bytes());
+                length += 4;
+            }
+            let Some(sent) = bytes.get(..length).filter(|sent| !sent.is_empty()) else { return };
+            self.failed |= self.host.write_all(sent).is_err();
+        }
+    }
+}
+
+fn run<S: Arithmetic>(outlet: &mut Outlet) -> bool {
+    let Ok(mut rig) = Rig::<S>::at_rest(Scenario::RESTING_PATH) else { return false };
+    for _ in 0..TICKS {
+        rig.tick(&mut Scenario, outlet);
+    }
+    !outlet.failed
+}
+
+#[entry]
+fn main() -> ! {
+    let done = hio::hstdout().is_ok_and(|host| {
+        let mut outlet = Outlet { host, failed: false };
+        run::<Fixed>(&mut outlet) && run::<f32>(&mut outlet)
+    });
+    debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+    stop()
+}
+
+fn stop() -> ! {
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[panic_handler]
+fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    debug::exit(debug::EXIT_FAILURE);
+    stop()
+}

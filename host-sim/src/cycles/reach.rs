@@ -1,0 +1,75 @@
+//! What a function can execute: its own instructions and those of all that it calls.
+
+use super::estimator::Decoded;
+use super::follow::FollowError;
+use super::image::Image;
+use super::instruction::Class;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// What can be reached from a function.
+#[derive(Clone, Debug, Default)]
+pub struct Reached {
+    /// Names of the functions.
+    pub functions: BTreeSet<String>,
+    /// Instructions of a floating-point unit, as text by address.
+    pub floating_point: BTreeMap<u32, String>,
+    /// Branches whose target is not in the instruction: what is behind them is not known.
+    pub indirect: BTreeMap<u32, String>,
+}
+
+/// Follows every branch and call from a function of an image.
+pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
+    let image = Image::read(path)?;
+    let mut decoded = Decoded::new(&image)?;
+    let mut reached = Reached::default();
+    let mut seen = BTreeSet::new();
+    let mut ahead = vec![image.function(function)?.address];
+    while let Some(address) = ahead.pop() {
+        if !seen.insert(address) {
+            continue;
+        }
+        let instruction = decoded.at(address).map_err(FollowError::Decode)?;
+        if let Some(function) = image.function_at(address) {
+            reached.functions.insert(function.name.clone());
+        }
+        let text = &instruction.text;
+        if text.starts_with('v') {
+            reached.floating_point.insert(address, text.clone());
+        }
+        let next = address + instruction.size;
+        // Conditional branches, and those that an IT block makes conditional, may also go on: a
+        // step too many is harmless, one too few is not.
+        let (goes_on, target) = match instruction.class {
+            Class::Call => (true, target(text)),
+            Class::Branch => (!matches!(mnemonic(text), "b" | "b.w"), target(text)),
+            Class::BranchToRegister if mnemonic(text) == "bx" && text.ends_with("lr") => {
+                (false, None)
+            }
+            Class::BranchToRegister => {
+                reached.indirect.insert(address, text.clone());
+                (true, None)
+            }
+            // A return, unless it is conditional.
+            Class::LoadMany(_) => (!instruction.writes_program_counter(), None),
+            _ if instruction.writes_program_counter() => {
+                reached.indirect.insert(address, text.clone());
+                (true, None)
+            }
+            _ => (true, None),
+        };
+        ahead.extend(target);
+        ahead.extend(goes_on.then_some(next));
+    }
+    Ok(reached)
+}
+
+fn mnemonic(text: &str) -> &str {
+    text.split(' ').next().unwrap_or(text)
+}
+
+/// The address that a branch names.
+fn target(text: &str) -> Option<u32> {
+    let digits = text.rsplit("#0x").next()?;
+    u32::from_str_radix(digits, 16).ok()
+}

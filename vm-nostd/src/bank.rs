@@ -1,0 +1,103 @@
+//! Several muscles, of any modes, stepped by one call.
+
+use crate::muscle::{ContinuousMuscle, FesMuscle, Input, Output};
+use crate::recruitment::{IntramuscularFes, NaturalContinuous};
+use crate::scalar::Scalar;
+use crate::state::State;
+use core::fmt;
+use heapless::Vec;
+
+/// A muscle with its state.
+#[derive(Clone, Copy, Debug)]
+// The modes differ by a few words in a kilobyte.
+#[allow(clippy::large_enum_variant)]
+pub enum BankedMuscle<S: Scalar, const N: usize> {
+    /// Under natural continuous recruitment.
+    Continuous(ContinuousMuscle<S, N>, State<S, NaturalContinuous, N>),
+    /// Under intramuscular FES.
+    Fes(FesMuscle<S, N>, State<S, IntramuscularFes, N>),
+}
+
+impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
+    /// Steps it by one tick, as [`Muscle::step`](crate::Muscle::step) does.
+    pub fn step(&mut self, input: Input<S>) -> Output<S> {
+        match self {
+            Self::Continuous(muscle, state) => muscle.step(state, input),
+            Self::Fes(muscle, state) => muscle.step(state, input),
+        }
+    }
+}
+
+/// The bank was full already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BankFull {
+    /// How many muscles it holds.
+    pub capacity: usize,
+}
+
+impl fmt::Display for BankFull {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the bank holds {} muscles, and has as many", self.capacity)
+    }
+}
+
+impl core::error::Error for BankFull {}
+
+/// Up to `CAPACITY` muscles of `N` fibre types each, without a heap.
+///
+/// ```
+/// use vm_nostd::{Bank, BankedMuscle, FesMuscle, Fixed, Input, MuscleParams, TimeStep};
+/// # use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
+/// # use vm_nostd::FiberParams;
+/// # let params = MuscleParams {
+/// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
+/// #     recruitment_saturation: 0.8, elements: ELEMENTS,
+/// #     fibers: [
+/// #         FiberParams { fraction: 0.6, fiber_type: SLOW },
+/// #         FiberParams { fraction: 0.4, fiber_type: FAST },
+/// #     ],
+/// # };
+/// let rest = Input::<Fixed>::from_integers(0, 160_000, 0);
+/// let muscle = FesMuscle::build(&params, TimeStep::MILLISECOND)?;
+/// let state = muscle.rest(rest.path_length)?;
+/// let mut bank = Bank::<Fixed, 2, 8>::new();
+/// bank.add(BankedMuscle::Fes(muscle, state))?;
+///
+/// // Every tick: an input for each place, of which those that are taken count.
+/// let mut inputs = [rest; 8];
+/// inputs[0] = Input::<Fixed>::from_integers(500, 160_000, 250);
+/// let outputs = bank.step(&inputs);
+/// assert_eq!(outputs.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Bank<S: Scalar, const N: usize, const CAPACITY: usize> {
+    muscles: Vec<BankedMuscle<S, N>, CAPACITY>,
+}
+
+impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
+    /// An empty bank.
+    pub const fn new() -> Self {
+        Self { muscles: Vec::new() }
+    }
+
+    /// Adds a muscle and returns its place, the lowest that is free; refused if none is.
+    pub fn add(&mut self, muscle: BankedMuscle<S, N>) -> Result<usize, BankFull> {
+        let place = self.muscles.len();
+        self.muscles.push(muscle).map_err(|_| BankFull { capacity: CAPACITY })?;
+        Ok(place)
+    }
+
+    /// The muscles, by place.
+    pub fn muscles(&self) -> &[BankedMuscle<S, N>] {
+        &self.muscles
+    }
+
+    /// Steps all muscles by one tick; the outputs are in the order of the muscles' places.
+    ///
+    /// Each muscle takes the input of its own place. Never fails, and takes as long as the steps
+    /// of its muscles.
+    pub fn step(&mut self, inputs: &[Input<S>; CAPACITY]) -> Vec<Output<S>, CAPACITY> {
+        self.muscles.iter_mut().zip(inputs).map(|(muscle, input)| muscle.step(*input)).collect()
+    }
+}

@@ -1,0 +1,220 @@
+//! Fixed point: 32 bits with 24 behind the point, and 64 with 56 for what lags move.
+
+mod kernels;
+mod mantissa;
+
+use super::sealed::Sealed;
+use super::{Lags, Scalar};
+use fixed::types::{I8F24, I16F16, I23F9};
+use kernels::{product, quotient, saturate, sum};
+
+/// The number that the model is computed in where there is no floating-point unit: Q8.24, from
+/// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1.
+pub type Fixed = I8F24;
+
+/// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factor {
+    mantissa: i32,
+    shift: u8,
+}
+
+impl Factor {
+    /// The nearest factor; its mantissa has 31 bits, unless it is below 2^-32.
+    fn new(value: f64) -> Self {
+        const TWO_30: f64 = (1 << 30) as f64;
+        let (mut mantissa, mut shift) = (value * TWO_30 * 2.0, 31);
+        while mantissa.abs() >= 2.0 * TWO_30 && shift > 1 {
+            mantissa *= 0.5;
+            shift -= 1;
+        }
+        while mantissa.abs() < TWO_30 && shift < 62 {
+            mantissa *= 2.0;
+            shift += 1;
+        }
+        Self { mantissa: nearest(mantissa), shift }
+    }
+
+    /// Units times the factor, rounded; saturated.
+    ///
+    /// # Scaling and overflow
+    /// The product of two 32-bit numbers is at most 2^62, half of what is shifted out at most 2^61.
+    fn times(self, units: i32) -> i32 {
+        let exact = i64::from(units) * i64::from(self.mantissa);
+        saturate((exact + (1 << (self.shift - 1))) >> self.shift)
+    }
+}
+
+/// The nearest whole number that fits.
+fn nearest(value: f64) -> i32 {
+    // Adding a half and cutting off rounds what is positive; `as` saturates.
+    (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
+}
+
+/// Units of [`I23F9`] in a metre.
+const PATH_UNITS: f64 = 512e6;
+const UNITS: f64 = (1 << 24) as f64;
+const FREQUENCY_UNITS: f64 = (1 << 16) as f64;
+/// Q8.56 has 32 bits more behind the point than Q8.24.
+const SLOW_SHIFT: u32 = 32;
+
+impl Sealed for Fixed {}
+
+impl Scalar for Fixed {
+    type Bits = u32;
+    type Factor = Factor;
+    /// Q8.56.
+    type Slow = i64;
+    /// Q0.32.
+    type Share = u32;
+    /// µm, in steps of 2 nm, to 4.19 m.
+    type PathLength = I23F9;
+    type Frequency = I16F16;
+    /// mN.
+    type Force = i32;
+
+    const ZERO: Self = Self::ZERO;
+    const ONE: Self = Self::ONE;
+    const HALF: Self = Self::from_bits(kernels::ONE / 2);
+    const LEAST: Self = Self::DELTA;
+    const LARGEST_COEFFICIENT: f64 = 60.0;
+    const LONGEST_PATH: f64 = 4.19;
+    const SLOW_WORDS: usize = 2;
+
+    fn from_f64(value: f64) -> Self {
+        Self::from_bits(nearest(value * UNITS))
+    }
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    fn to_bits(self) -> u32 {
+        self.to_bits() as u32
+    }
+    fn from_bits(bits: u32) -> Self {
+        Self::from_bits(bits as i32)
+    }
+    fn is_finite(self) -> bool {
+        true
+    }
+    fn is_saturated(self) -> bool {
+        self == Self::MAX
+    }
+
+    fn factor(value: f64) -> Factor {
+        Factor::new(value)
+    }
+    fn scaled(self, factor: &Factor) -> Self {
+        Self::from_bits(factor.times(self.to_bits()))
+    }
+    fn saturating_add(self, other: Self) -> Self {
+        Self::from_bits(sum(self.to_bits(), other.to_bits()))
+    }
+    fn saturating_mul(self, other: Self) -> Self {
+        Self::from_bits(product(self.to_bits(), other.to_bits()))
+    }
+    fn ratio(self, divisor: Self) -> Self {
+        Self::from_bits(quotient(self.to_bits().into(), divisor.to_bits().into()))
+    }
+
+    fn exp(self) -> Self {
+        Self::from_bits(kernels::exp(self.to_bits()))
+    }
+    fn ln(self) -> Self {
+        Self::from_bits(kernels::ln(self.to_bits()))
+    }
+    fn softplus(self) -> (Self, Self) {
+        let (value, slope) = kernels::softplus(self.to_bits());
+        (Self::from_bits(value), Self::from_bits(slope))
+    }
+    fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
+        let (value, slope, bend) = kernels::hyperbola(self.to_bits(), n.to_bits(), d.to_bits());
+        (Self::from_bits(value), Self::from_bits(slope), Self::from_bits(bend))
+    }
+    fn halley(self, slope: Self, half_curvature: Self) -> Self {
+        let [residual, slope, curvature] = [self, slope, half_curvature].map(Self::to_bits);
+        Self::from_bits(kernels::halley(residual, slope, curvature))
+    }
+
+    fn slow(self) -> i64 {
+        i64::from(self.to_bits()) << SLOW_SHIFT
+    }
+    fn of(slow: i64) -> Self {
+        // Values are levels and frequencies far below the greatest: half a unit more fits.
+        Self::from_bits((slow.saturating_add(1 << (SLOW_SHIFT - 1)) >> SLOW_SHIFT) as i32)
+    }
+    fn moved(slow: i64, difference: Self, share: u32) -> i64 {
+        slow.saturating_add(i64::from(difference.to_bits()) * i64::from(share))
+    }
+    fn moved_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
+        Self::moved(Self::moved(slow, first.0, first.1), second.0, second.1)
+    }
+    fn share(value: f64) -> u32 {
+        (value * 4_294_967_296.0 + 0.5) as u32
+    }
+    fn lags(self) -> [Lags<u32>; 2] {
+        let x = self.to_bits().max(0);
+        let left_at_half = kernels::decay(x >> 1);
+        let left = ((u64::from(left_at_half) * u64::from(left_at_half)) >> 32) as u32;
+        // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
+        let delayed = |left: u32, shift: u32| ((x as u64 * u64::from(left)) >> shift) as u32;
+        [
+            Lags { done: u32::MAX - left_at_half, delayed: delayed(left_at_half, 25) },
+            Lags { done: u32::MAX - left, delayed: delayed(left, 24) },
+        ]
+    }
+    fn slow_words(slow: i64) -> impl Iterator<Item = u32> {
+        [slow as u32, (slow >> 32) as u32].into_iter()
+    }
+    fn slow_from_words(words: &mut impl Iterator<Item = u32>) -> Option<i64> {
+        let low = i64::from(words.next()?);
+        Some(i64::from(words.next()? as i32) << 32 | low)
+    }
+
+    fn path_length(metres: f64) -> I23F9 {
+        I23F9::from_bits(nearest(metres * PATH_UNITS))
+    }
+    fn path_metres(path: I23F9) -> f64 {
+        f64::from(path.to_bits()) / PATH_UNITS
+    }
+    fn path_is_finite(_: I23F9) -> bool {
+        true
+    }
+    fn per_metre(value: f64) -> Factor {
+        Factor::new(value * UNITS / PATH_UNITS)
+    }
+    fn path_difference(path: I23F9, other: I23F9, per_metre: &Factor) -> Self {
+        Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
+    }
+    fn path_bits(path: I23F9) -> u32 {
+        path.to_bits() as u32
+    }
+    fn path_from_bits(bits: u32) -> I23F9 {
+        I23F9::from_bits(bits as i32)
+    }
+
+    fn frequency(pps: f64) -> I16F16 {
+        I16F16::from_bits(nearest(pps * FREQUENCY_UNITS))
+    }
+    fn frequency_is_finite(_: I16F16) -> bool {
+        true
+    }
+    fn per_pps(value: f64) -> Factor {
+        Factor::new(value * UNITS / FREQUENCY_UNITS)
+    }
+    fn of_frequency(frequency: I16F16, per_pps: &Factor) -> Self {
+        Self::from_bits(per_pps.times(frequency.to_bits()))
+    }
+
+    fn force_factor(newtons: f64) -> Factor {
+        Factor::new(newtons * 1e3 / UNITS)
+    }
+    fn force(self, force_factor: &Factor) -> i32 {
+        force_factor.times(self.to_bits())
+    }
+    fn force_bits(force: i32) -> u32 {
+        force as u32
+    }
+    fn newtons(force: i32) -> f64 {
+        f64::from(force) * 1e-3
+    }
+}
