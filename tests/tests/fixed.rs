@@ -178,7 +178,8 @@ proptest! {
     #[test]
     fn it_is_the_same_muscle_as_in_f32(
         params in muscles(),
-        segments in prop::collection::vec((0..=1000_u16, 0.0..=1.0_f64, 0..800_u16), 2..6),
+        // One thousandth is the threshold of the first type: on it, rounding decides.
+        segments in prop::collection::vec((2..=1000_u16, 0.0..=1.0_f64, 0..800_u16), 2..6),
     ) {
         let natural = difference::<NaturalContinuous, NaturalContinuous>(&params, &segments);
         let fes = difference::<IntramuscularFes, IntramuscularFes>(&params, &segments);
