@@ -10,8 +10,11 @@ use host_sim::trace::InputTrace;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, FiberParams, Fixed, Input, IntramuscularFes, Muscle, MuscleParams,
-    NaturalContinuous, Recruitment, Scalar, State, TimeStep, feline_vm4, human_vm4, paper_table_1,
+    ActivationParams, CompressionParams, ContinuousMuscle, ElementParams, ExcitationParams,
+    FesMuscle, FiberParams, FiberType, Fixed, ForceLengthParams, ForceVelocityParams, Input,
+    IntramuscularFes, Muscle, MuscleParams, NaturalContinuous, ParallelParams, Recruitment,
+    RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, feline_vm4,
+    human_vm4, paper_table_1,
 };
 
 /// Steady force of the reference, N, at a constant input.
@@ -76,6 +79,106 @@ fn muscles() -> impl Strategy<Value = MuscleParams<2>> {
                 ],
             };
             params.max_path_length += (longest - params.maximum_fascicle_length()) * fascicle;
+            params
+        })
+        .prop_filter("a valid muscle", |params| {
+            ContinuousMuscle::<Fixed, 2>::build(params, TimeStep::MILLISECOND).is_ok()
+        })
+}
+
+/// A number from `least` to `most`, as likely small as large.
+fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> {
+    (least.ln()..most.ln()).prop_map(f64::exp)
+}
+
+/// A fibre type with any coefficients that are documented to be allowed.
+fn any_type() -> impl Strategy<Value = FiberType> {
+    let frequencies = (magnitude(0.5, 200.0), 0.0..5.0_f64, 0.0..5.0_f64);
+    let length = (magnitude(0.1, 10.0), magnitude(0.1, 10.0), 1.0..10.0_f64);
+    let velocity = (
+        magnitude(0.1, 100.0),
+        -10.0..10.0_f64,
+        -10.0..10.0_f64,
+        -10.0..0.0_f64,
+        -5.0..10.0_f64,
+        -10.0..5.0_f64,
+        magnitude(0.01, 10.0),
+    );
+    let activation = (magnitude(0.05, 10.0), magnitude(0.5, 10.0), 0.0..20.0_f64);
+    let times =
+        [magnitude(5e-3, 0.5), magnitude(1e-4, 0.5), magnitude(5e-3, 0.5), magnitude(1e-4, 0.5)];
+    let sag = (magnitude(0.01, 10.0), magnitude(0.01, 10.0), magnitude(0.01, 10.0));
+    let yielding = (0.0..0.95_f64, magnitude(0.01, 100.0), magnitude(0.05, 10.0));
+    (frequencies, length, velocity, activation, times, sag, yielding).prop_map(
+        |(f, l, v, a, t, s, y)| FiberType {
+            rank: 1,
+            half_force_frequency: f.0,
+            minimum_frequency: f.1,
+            maximum_frequency: f.1 + f.2,
+            force_length: ForceLengthParams { width: l.0, skewness: l.1, roundness: l.2 },
+            force_velocity: ForceVelocityParams {
+                maximum_velocity: -v.0,
+                shortening: [v.1, v.2],
+                lengthening: [v.3, v.4, v.5],
+                lengthening_velocity: v.6,
+            },
+            activation: ActivationParams { scale: a.0, exponent: a.1, length_dependence: a.2 },
+            excitation: ExcitationParams {
+                rise: t[0],
+                rise_per_frequency: t[1],
+                fall: t[2],
+                fall_per_activation: t[3],
+            },
+            sag: Some(SagParams { resting_level: s.0, firing_level: s.1, time_constant: s.2 }),
+            yielding: Some(YieldParams { depth: y.0, velocity: y.1, time_constant: y.2 }),
+        },
+    )
+}
+
+/// A muscle with any parameters that are documented to be allowed, and that fixed point takes.
+fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
+    let types = prop_oneof![
+        (any_type(), any_type()).prop_map(|(a, b)| [a, b]),
+        any_type().prop_map(|a| [a, FiberType { rank: 2, ..human_vm4::FAST }]),
+        Just([paper_table_1::SLOW, paper_table_1::FAST]),
+    ];
+    let size = (magnitude(1e-5, 20.0), magnitude(5e-3, 1.0), magnitude(1e-3, 2.0), 0.8..2.0_f64);
+    let tendon = (magnitude(1.0, 200.0), magnitude(1e-3, 0.05), 0.5..1.5_f64);
+    let parallel = (magnitude(1.0, 200.0), magnitude(0.01, 0.3), 0.8..1.5_f64, 0.0..1.0_f64);
+    let compression = (-1.0..0.0_f64, -40.0..-1.0_f64, 0.4..1.0_f64);
+    let other = (magnitude(1e4, 1e7), 0.001..0.999_f64, 0.01..1.0_f64);
+    (types, size, tendon, parallel, compression, other)
+        .prop_map(|(types, size, t, p, c, (specific_tension, fraction, saturation))| {
+            let (mass, fascicle_length, tendon_length, longest) = size;
+            let mut params = MuscleParams {
+                mass,
+                fascicle_length,
+                tendon_length,
+                max_path_length: fascicle_length + tendon_length,
+                recruitment_saturation: saturation,
+                elements: ElementParams {
+                    tendon: TendonParams { stiffness: t.0, toe: t.1, slack_length: t.2 },
+                    parallel: ParallelParams {
+                        stiffness: p.0,
+                        toe: p.1,
+                        slack_length: p.2,
+                        viscosity: p.3,
+                    },
+                    compression: CompressionParams {
+                        strength: c.0,
+                        steepness: c.1,
+                        onset_length: c.2,
+                    },
+                    specific_tension,
+                    density: 1060.0,
+                },
+                fibers: [
+                    FiberParams { fraction, fiber_type: types[0] },
+                    FiberParams { fraction: 1.0 - fraction, fiber_type: types[1] },
+                ],
+            };
+            let missing = longest - params.maximum_fascicle_length();
+            params.max_path_length += missing * fascicle_length;
             params
         })
         .prop_filter("a valid muscle", |params| {
@@ -176,6 +279,19 @@ proptest! {
     }
 
     #[test]
+    fn nothing_wraps_around_in_any_muscle_that_is_taken(
+        params in any_muscle(),
+        step in steps(),
+        inputs in prop::collection::vec(any_bits(), 1..20),
+    ) {
+        // Fewer substeps at one step than at another: a muscle may be refused at this one.
+        if ContinuousMuscle::<Fixed, 2>::build(&params, step).is_ok() {
+            takes_any_bits::<NaturalContinuous>(&params, step, &inputs);
+            takes_any_bits::<IntramuscularFes>(&params, step, &inputs);
+        }
+    }
+
+    #[test]
     fn it_is_the_same_muscle_as_in_f32(
         params in muscles(),
         // One thousandth is the threshold of the first type: on it, rounding decides.
@@ -185,6 +301,35 @@ proptest! {
         let fes = difference::<IntramuscularFes, IntramuscularFes>(&params, &segments);
         prop_assert!(natural <= 0.1 && fes <= 0.1, "natural {natural}, FES {fes} % of F0");
     }
+}
+
+#[test]
+fn states_that_no_tick_leaves_are_refused() {
+    let muscle = FesMuscle::<Fixed, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
+    let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
+    let saved: Vec<u32> = state.words().collect();
+    let whole = |value: u32| value << 24;
+    // Words 5 to 14 are of the slow type, which yields and does not sag; lags have two, the
+    // higher one second.
+    for (word, value) in [
+        (0, 0x8000_0000), // extension -128
+        (0, whole(129)),  // extension -127
+        (1, whole(61)),   // velocity
+        (2, 0x7FFF_FFFF), // path of 4.19 m
+        (4, whole(1)),    // U_eff under FES
+        (6, whole(2)),    // f_int above 1 under FES
+        (8, whole(100)),  // f_eff
+        (10, 0),          // Y below 1 - c_Y
+        (12, whole(100)), // S of a type without sag
+        (13, whole(2)),   // the target of Y
+        (14, whole(2)),   // Af
+    ] {
+        let mut words = saved.clone();
+        words[word] = value;
+        let refused = muscle.restore(words).expect_err("no tick leaves this");
+        assert!(matches!(refused, RestoreError::Value { word: w } if w <= word), "word {word}");
+    }
+    assert_eq!(muscle.restore(saved), Ok(state));
 }
 
 #[test]
@@ -200,4 +345,15 @@ fn muscles_that_fixed_point_cannot_hold_are_refused_by_name() {
     assert!(message.contains("half_force_frequency") && message.contains("250"), "{message}");
     let message = refused(|p| p.fibers[1].fiber_type.force_velocity.lengthening_velocity = 0.015);
     assert!(message.contains("lengthening_velocity"), "{message}");
+    let message = refused(|p| (p.elements.tendon.stiffness, p.elements.tendon.toe) = (5.0, 0.001));
+    assert!(message.contains("tendon.toe"), "{message}");
+    let message = refused(|p| {
+        p.elements.tendon.stiffness = 200.0;
+        (p.tendon_length, p.max_path_length) = (0.003, 0.167);
+    });
+    assert!(message.contains("tendon.stiffness"), "{message}");
+    let message = refused(|p| p.mass = 1e-4);
+    assert!(message.contains("mass: F0") && message.contains('1'), "{message}");
+    let message = refused(|p| p.elements.compression.strength = -1.0);
+    assert!(message.contains("compression.strength"), "{message}");
 }

@@ -119,7 +119,9 @@ impl<S: Scalar> ActivationCurve<S> {
         // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
         let relative = frequency_change.ratio(inside).max(-self.steepest).min(self.steepest);
         let exponent_change = self.exponent_slope.saturating_mul(length_change);
-        let change = (self.exponent * relative)
+        let change = self
+            .exponent
+            .saturating_mul(relative)
             .saturating_add((logarithm - S::ONE).saturating_mul(exponent_change));
         (S::ONE - remainder, (remainder * power).saturating_mul(change))
     }

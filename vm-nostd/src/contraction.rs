@@ -103,7 +103,6 @@ struct Substep<S: Scalar> {
     carry: S,
     /// Mass over gamma times the substep, F0 s/L_ce0.
     inertia: S,
-    inertia_factor: S::Factor,
 }
 
 impl<S: Scalar> Substep<S> {
@@ -117,7 +116,6 @@ impl<S: Scalar> Substep<S> {
             carry_share: S::from_f64((1.0 - GAMMA) * share),
             carry: S::from_f64((1.0 - GAMMA) / GAMMA),
             inertia: S::from_f64(inertia),
-            inertia_factor: S::factor(inertia),
         }
     }
 }
@@ -127,9 +125,17 @@ fn moving_mass<const N: usize>(params: &MuscleParams<N>) -> f64 {
     0.5 * params.mass * params.fascicle_length / params.max_isometric_force()
 }
 
-/// The largest coefficient of the mechanics of a muscle: its inertia in the first substep.
-pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>) -> f64 {
-    moving_mass(params) / (GAMMA * FIRST_SUBSTEP)
+/// The tendon's stiffness when it is taut, F0/L_ce0.
+fn tendon_stiffness<const N: usize>(params: &MuscleParams<N>) -> f64 {
+    params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length
+}
+
+/// The largest coefficient of the mechanics of a muscle: its inertia in the shortest substep.
+pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> f64 {
+    let mass = moving_mass(params);
+    let rest = step.seconds() - FIRST_SUBSTEP;
+    let other = rest / f64::from(ringing_substeps(rest, mass, tendon_stiffness(params)));
+    mass / (GAMMA * Scalar::min(other, FIRST_SUBSTEP))
 }
 
 /// How many substeps cover `rest` (s), for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
@@ -150,8 +156,7 @@ fn ringing_substeps(rest: f64, mass: f64, stiffness: f64) -> u8 {
 impl<S: Scalar> Contraction<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let mass = moving_mass(params);
-        let stiffness =
-            params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length;
+        let stiffness = tendon_stiffness(params);
         let rest = step.seconds() - FIRST_SUBSTEP;
         let others = ringing_substeps(rest, mass, stiffness);
         let tendon = &params.elements.tendon;
@@ -228,19 +233,20 @@ impl<S: Scalar> Contraction<S> {
         contractile: &Contractile<S, N>,
         guess: S,
     ) -> Solved<S> {
+        let extension = extension.middle + extension.change * time;
+        let standstill = self.tendon.pull(extension - self.lengthening(base.travel));
         let stage = Stage {
             contraction: self,
             substep,
             base,
-            extension: extension.middle + extension.change * time,
+            extension,
             // Drawn out to the tick's ends, a gain that falls fast would pass 0.
             gains: contractile.gains.map(|gain| (gain.middle + gain.change * time).max(S::ZERO)),
             passive: (contractile.passive.middle + contractile.passive.change * time)
                 .saturating_add(contractile.passive_slope.saturating_mul(base.travel)),
             contractile,
         };
-        let at_zero = stage.residual(true, S::ZERO).value;
-        let lengthening = at_zero < S::ZERO;
+        let lengthening = stage.residual_at_standstill(standstill.force) < S::ZERO;
         let mut velocity = if (guess > S::ZERO) == lengthening { guess } else { S::ZERO };
         let mut residual = S::ZERO;
         for _ in 0..ITERATIONS {
@@ -281,6 +287,17 @@ struct Residual<S> {
 }
 
 impl<S: Scalar, const N: usize> Stage<'_, S, N> {
+    /// The residual, F0, at V = 0, where FV is 1, with the tendon's force there.
+    fn residual_at_standstill(&self, pull: S) -> S {
+        let passive = self.passive.max(self.contractile.passive_floor);
+        let force = self.gains.iter().fold(passive, |sum, gain| sum.saturating_add(*gain));
+        self.substep
+            .inertia
+            .saturating_mul(-self.base.velocity)
+            .saturating_add(force.max(S::ZERO))
+            .saturating_add(-pull)
+    }
+
     /// The residual, F0, on one branch of FV.
     fn residual(&self, lengthening: bool, velocity: S) -> Residual<S> {
         let (c, substep) = (self.contraction, self.substep);
@@ -301,7 +318,7 @@ impl<S: Scalar, const N: usize> Stage<'_, S, N> {
         }
         let travel = self.base.travel + substep.gamma_share * velocity;
         let pull = c.tendon.pull(self.extension - c.lengthening(travel));
-        let acceleration = (velocity - self.base.velocity).scaled(&substep.inertia_factor);
+        let acceleration = substep.inertia.saturating_mul(velocity - self.base.velocity);
         Residual {
             value: acceleration.saturating_add(force).saturating_add(-pull.force),
             slope: slope.saturating_add(substep.inertia + pull.stiffness * substep.gamma_share),

@@ -3,6 +3,7 @@
 use crate::muscle::Input;
 use crate::params::MuscleParams;
 use crate::scalar::Scalar;
+use core::ops::Add;
 
 bitflags::bitflags! {
     /// What a tick had to saturate; empty when inputs and state were inside the domain.
@@ -32,7 +33,7 @@ bitflags::bitflags! {
         /// last correction of a velocity, as when a path jumps: force is less accurate.
         const MECHANICS_UNSETTLED = 1 << 9;
         /// The tendon is extended by more than the arithmetic can tell: its force was taken at
-        /// the most that it can. Only in fixed point, and at more than ten times F0.
+        /// the most that it can. Only in fixed point, and at no less than ten times F0.
         const TENDON_FORCE_LIMITED = 1 << 10;
     }
 }
@@ -44,7 +45,8 @@ pub(crate) const MAXIMUM_SPEED: f64 = 60.0;
 
 /// A closed range.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Range<S> {
+#[doc(hidden)]
+pub struct Range<S> {
     pub(crate) least: S,
     pub(crate) most: S,
 }
@@ -60,6 +62,14 @@ impl<T: Copy + PartialOrd> Range<T> {
         let raised = if value > self.least { value } else { self.least };
         let clipped = if raised < self.most { raised } else { self.most };
         (clipped, clipped != value)
+    }
+
+    /// Whether a value is in the range or out of it by no more than rounding may take it.
+    pub(crate) fn about_contains(&self, value: T, rounding: T) -> bool
+    where
+        T: Add<Output = T>,
+    {
+        value + rounding >= self.least && value <= self.most + rounding
     }
 
     pub(crate) fn contains(&self, value: T) -> bool {

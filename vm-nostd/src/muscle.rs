@@ -2,7 +2,7 @@
 
 use crate::activation::ActivationFrequency;
 use crate::contraction::{Contractile, Contraction, Motion};
-use crate::domain::{Domain, Status};
+use crate::domain::{Domain, Range, Status};
 use crate::error::{ParameterError, within};
 use crate::excitation::Excitation;
 use crate::force_length::ForceLength;
@@ -14,7 +14,7 @@ use crate::recruitment::{
 };
 use crate::sag::Sag;
 use crate::scalar::Scalar;
-use crate::state::{FiberState, RestoreError, State};
+use crate::state::{FiberRanges, FiberState, Ranges, RestoreError, State};
 use crate::time_step::TimeStep;
 use crate::yielding::Yielding;
 use core::marker::PhantomData;
@@ -104,8 +104,10 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// limit it broke.
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
         params.validate()?;
-        params.validate_magnitudes(S::LARGEST_COEFFICIENT)?;
+        params.validate_magnitudes(step, S::LARGEST_COEFFICIENT)?;
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
+        let (least, most) = S::MAXIMAL_FORCES;
+        within("mass: F0, N", params.max_isometric_force(), least, most)?;
         let elements = &params.elements;
         // Without a floor of its own, the passive force ends where nothing will ever push it.
         let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { 0.0 } else { -100.0 };
@@ -169,7 +171,15 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         &self,
         words: impl IntoIterator<Item = S::Bits>,
     ) -> Result<State<S, R, N>, RestoreError> {
-        State::from_words(words, &self.domain, &self.contraction.tendon)
+        let (effective_activation, frequencies) = self.recruitment.ranges();
+        let mut fibers = self.fibers.map(|fiber| FiberRanges {
+            frequency: Range { least: S::ZERO, most: S::ZERO },
+            yielding: fiber.yielding.range(),
+            sag: fiber.sag.range(),
+        });
+        fibers.iter_mut().zip(frequencies).for_each(|(fiber, range)| fiber.frequency = range);
+        let ranges = Ranges { effective_activation, fibers };
+        State::from_words(words, &self.domain, &self.contraction.tendon, &ranges)
     }
 
     /// The state as an output, as it was after the tick that left it: force, length, velocity.

@@ -10,6 +10,7 @@ use crate::force_velocity::ForceVelocityParams;
 use crate::passive::{CompressionParams, ParallelParams};
 use crate::sag::SagParams;
 use crate::tendon::TendonParams;
+use crate::time_step::TimeStep;
 use crate::yielding::YieldParams;
 
 /// Coefficients of a fibre type.
@@ -122,6 +123,10 @@ const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Fields that fixed point refuses for what follows from them.
 const INERTIA: &str = "fascicle_length: inertia in the first substep, F0 s/L_ce0";
+const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
+const TOE_FORCE: &str = "tendon.toe: stiffness times toe, F0";
+/// The force that a tendon must be able to carry, F0.
+const LEAST_FORCE: f64 = 10.0;
 const REACH: &str = "max_path_length: range of the path, L_ce0";
 const LONGEST_LENGTH: &str = "activation.length_dependence: longest length (L_ce0) with n_f >= 0.2";
 /// A type must be usable at least between these fascicle lengths, L_ce0.
@@ -195,23 +200,28 @@ impl<const N: usize> MuscleParams<N> {
         within("max_path_length", self.max_path_length, least, most)
     }
 
-    /// Whether no coefficient, and no force on the way, is larger than the arithmetic holds: in
-    /// fixed point a number ends at 128, and sums of two coefficients have to fit.
-    pub(crate) fn validate_magnitudes(&self, largest: f64) -> Result<(), ParameterError> {
+    /// Whether coefficients, and forces on the way, fit in the arithmetic: in fixed point a number
+    /// ends at 128, and sums of two coefficients have to fit.
+    pub(crate) fn validate_magnitudes(
+        &self,
+        step: TimeStep,
+        largest: f64,
+    ) -> Result<(), ParameterError> {
         let (shortest, longest) = self.fascicle_domain();
-        within(INERTIA, largest_inertia(self), 0.0, largest)?;
+        within(INERTIA, largest_inertia(self, step), 0.0, largest)?;
+        let tendon = &self.elements.tendon;
+        let stiffness = tendon.stiffness * self.fascicle_length / self.tendon_length;
+        within("tendon.stiffness: F0/L_ce0", stiffness, 0.0, 100.0 * largest)?;
+        // So many widths of the toe can be told; less force than this would not do.
+        let toe_force = tendon.stiffness * tendon.toe;
+        within(TOE_FORCE, toe_force, LEAST_FORCE / (2.0 * largest), f64::MAX)?;
         // A path reaches this far where no tendon is left.
         let reach = self.max_path_length / self.fascicle_length;
         within(REACH, reach - self.path_domain().0 / self.fascicle_length, 0.0, largest)?;
         let parallel = self.elements.parallel.force(reach / self.maximum_fascicle_length());
         within("parallel.stiffness: force on the longest path, F0", parallel, 0.0, largest)?;
         let compression = self.elements.compression.force(shortest);
-        within(
-            "compression.strength: force at the shortest length, F0",
-            compression,
-            -largest,
-            0.0,
-        )?;
+        within(COMPRESSION, compression, -largest / 4.0, 0.0)?;
         self.each_fiber(|t| {
             let frequency = MAXIMUM_STIMULATION_FREQUENCY / t.half_force_frequency;
             // Added to nothing, it may be as large as two coefficients.

@@ -6,6 +6,7 @@ mod fes;
 pub use continuous::NaturalContinuous;
 pub use fes::IntramuscularFes;
 
+use crate::domain::Range;
 use crate::excitation::Excitation;
 use crate::muscle::Input;
 use crate::params::MuscleParams;
@@ -29,6 +30,9 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     const PASSIVE_ONLY_PULLS: bool;
 
     fn new(params: &MuscleParams<N>, step: TimeStep) -> Self;
+
+    /// Where effective activation, and f_int and f_eff of each type, always are.
+    fn ranges(&self) -> (Range<S>, [Range<S>; N]);
 
     /// Advances effective activation and excitation by one tick at a fascicle length.
     fn advance(

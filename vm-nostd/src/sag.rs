@@ -1,5 +1,6 @@
 //! Sag of fast fibres: dS/dt = (aS - S)/TS, aS = aS1 below f = 0.1 f0.5, else aS2.
 
+use crate::domain::Range;
 use crate::error::{ParameterError, within};
 use crate::lag::Lag;
 use crate::scalar::Scalar;
@@ -48,6 +49,12 @@ impl<S: Scalar> Sag<S> {
             firing_level: S::from_f64(firing),
             lag: Lag::new(time_constant, step),
         }
+    }
+
+    /// Where S always is.
+    pub(crate) fn range(&self) -> Range<S> {
+        let (a, b) = (self.resting_level, self.firing_level);
+        Range { least: a.min(b), most: a.max(b) }
     }
 
     /// S at the tick's end, the type having been firing for a `share` (0..1) of it.

@@ -57,6 +57,8 @@ pub trait Scalar:
     const LEAST: Self;
     /// No larger coefficient can be held.
     const LARGEST_COEFFICIENT: f64;
+    /// The least and the greatest maximal isometric force that outputs can resolve and hold, N.
+    const MAXIMAL_FORCES: (f64, f64);
     /// The longest path that can be held, m.
     const LONGEST_PATH: f64;
     /// Words of a [`Slow`](Scalar::Slow) in a saved state.

@@ -117,15 +117,15 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
         words: impl IntoIterator<Item = S::Bits>,
         domain: &Domain<S>,
         tendon: &Tendon<S>,
+        ranges: &Ranges<S, N>,
     ) -> Result<Self, RestoreError> {
         let mut saved = Saved { words: words.into_iter(), count: 0, expected: Self::WORDS };
         let share = Range { least: S::ZERO, most: S::ONE };
-        let level = Range { least: S::ZERO, most: S::from_f64(MOST_LEVEL) };
         let mut state = Self {
             tendon_extension: saved.number(S::is_finite)?,
             fascicle_velocity: saved.number(|value| domain.fascicle_velocity.contains(value))?,
             path_length: saved.path::<S>(&domain.path_length)?,
-            effective_activation: saved.slow(&share)?,
+            effective_activation: saved.slow(&ranges.effective_activation)?,
             fibers: [FiberState::at_rest(S::ONE); N],
             recruitment: PhantomData,
         };
@@ -135,13 +135,14 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
         if (length - nearest).abs() > S::from_f64(1e-4) {
             return Err(RestoreError::Value { word: 0 });
         }
-        for fiber in &mut state.fibers {
+        for (fiber, range) in state.fibers.iter_mut().zip(&ranges.fibers) {
             *fiber = FiberState {
-                intermediate_frequency: saved.slow(&level)?,
-                effective_frequency: saved.slow(&level)?,
-                yielding: saved.slow(&share)?,
-                sag: saved.slow(&level)?,
-                yielding_target: saved.number(|value| share.contains(value))?,
+                intermediate_frequency: saved.slow(&range.frequency)?,
+                effective_frequency: saved.slow(&range.frequency)?,
+                yielding: saved.slow(&range.yielding)?,
+                sag: saved.slow(&range.sag)?,
+                yielding_target: saved
+                    .number(|value| range.yielding.about_contains(value, S::from_f64(ROUNDING)))?,
                 activation: saved.number(|value| share.contains(value))?,
             };
         }
@@ -152,8 +153,23 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
     }
 }
 
-/// No frequency (f0.5) and no level of sag is above this.
-const MOST_LEVEL: f64 = 100.0;
+/// What a value of a saved state may be outside of its range by.
+const ROUNDING: f64 = 1e-5;
+
+/// Where the values of a muscle's state always are.
+pub(crate) struct Ranges<S, const N: usize> {
+    pub(crate) effective_activation: Range<S>,
+    pub(crate) fibers: [FiberRanges<S>; N],
+}
+
+/// Where the values of a fibre type's state always are.
+#[derive(Clone, Copy)]
+pub(crate) struct FiberRanges<S> {
+    /// f_int and f_eff.
+    pub(crate) frequency: Range<S>,
+    pub(crate) yielding: Range<S>,
+    pub(crate) sag: Range<S>,
+}
 
 /// Words that are being read.
 struct Saved<I> {
@@ -207,7 +223,9 @@ impl<I> Saved<I> {
         I: Iterator<Item = S::Bits>,
     {
         let value = S::slow_from_words(&mut self.words);
-        self.checked(value, S::SLOW_WORDS, |value| range.contains(S::of(*value)))
+        self.checked(value, S::SLOW_WORDS, |value| {
+            range.about_contains(S::of(*value), S::from_f64(ROUNDING))
+        })
     }
 }
 

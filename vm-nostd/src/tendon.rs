@@ -97,10 +97,11 @@ impl<S: Scalar> Tendon<S> {
     pub(crate) fn pull(&self, extension: S) -> Pull<S> {
         let toes = extension.scaled(&self.per_toe);
         let (value, slope) = toes.softplus();
+        let force = value.scaled(&self.force);
         Pull {
-            force: value.scaled(&self.force),
+            force,
             stiffness: slope.scaled(&self.stiffness),
-            saturated: toes.is_saturated(),
+            saturated: toes.is_saturated() || force.is_saturated(),
         }
     }
 }

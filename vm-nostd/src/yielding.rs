@@ -1,5 +1,6 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
+use crate::domain::Range;
 use crate::error::{ParameterError, within};
 use crate::lag::Lag;
 use crate::scalar::Scalar;
@@ -46,6 +47,11 @@ impl<S: Scalar> Yielding<S> {
             per_velocity: S::factor(1.0 / velocity),
             lag: Lag::new(time_constant, step),
         }
+    }
+
+    /// Where Y always is.
+    pub(crate) fn range(&self) -> Range<S> {
+        Range { least: S::ONE - self.depth, most: S::ONE }
     }
 
     /// Where Y tends to at a fascicle velocity in L_ce0/s.

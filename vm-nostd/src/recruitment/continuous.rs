@@ -8,6 +8,7 @@
 //! recruited types, so that the weights add to 1.
 
 use super::{Course, Recruited, Recruitment, RecruitmentTick};
+use crate::domain::Range;
 use crate::excitation::Excitation;
 use crate::lag::Lag;
 use crate::muscle::Input;
@@ -41,20 +42,20 @@ pub struct Coefficients<S: Scalar, const N: usize> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Unit<S> {
+struct Unit<S: Scalar> {
     /// Uth.
     threshold: S,
     /// fmin.
     minimum_frequency: S,
     /// (fmax - fmin)/(1 - Uth).
-    frequency_slope: S,
+    frequency_slope: S::Factor,
 }
 
 impl<S: Scalar> Unit<S> {
     /// f_env: from fmin at the threshold to fmax at U = 1, by raw activation.
     fn firing_frequency(&self, activation: S) -> S {
         if activation >= self.threshold {
-            self.minimum_frequency + self.frequency_slope * (activation - self.threshold)
+            self.minimum_frequency + (activation - self.threshold).scaled(&self.frequency_slope)
         } else {
             S::ZERO
         }
@@ -78,7 +79,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             Unit {
                 threshold: S::from_f64(threshold),
                 minimum_frequency: S::from_f64(t.minimum_frequency),
-                frequency_slope: S::from_f64(slope),
+                frequency_slope: S::factor(slope),
             }
         });
         Self {
@@ -87,6 +88,12 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             firing: S::from_f64(SagParams::FIRING),
             units,
         }
+    }
+
+    fn ranges(&self) -> (Range<S>, [Range<S>; N]) {
+        let frequencies =
+            self.units.map(|unit| Range { least: S::ZERO, most: unit.firing_frequency(S::ONE) });
+        (Range { least: S::ZERO, most: S::ONE }, frequencies)
     }
 
     fn advance(

@@ -6,6 +6,7 @@
 //! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
 
 use super::{Course, Recruited, Recruitment, RecruitmentTick};
+use crate::domain::Range;
 use crate::excitation::Excitation;
 use crate::muscle::Input;
 use crate::params::MuscleParams;
@@ -48,6 +49,12 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 per_half_force_frequency: S::per_pps(1.0 / fiber.fiber_type.half_force_frequency),
             }),
         }
+    }
+
+    fn ranges(&self) -> (Range<S>, [Range<S>; N]) {
+        // The two lags carry the recruitment.
+        let recruitment = Range { least: S::ZERO, most: S::ONE };
+        (Range { least: S::ZERO, most: S::ZERO }, [recruitment; N])
     }
 
     fn advance(

@@ -5,12 +5,14 @@ mod mantissa;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
+use fixed::Saturating;
 use fixed::types::{I8F24, I16F16, I23F9};
 use kernels::{product, quotient, saturate, sum};
 
 /// The number that the model is computed in where there is no floating-point unit: Q8.24, from
-/// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1.
-pub type Fixed = I8F24;
+/// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1. Its sums and products saturate: nothing
+/// wraps around.
+pub type Fixed = Saturating<I8F24>;
 
 /// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,10 +76,11 @@ impl Scalar for Fixed {
     type Force = i32;
 
     const ZERO: Self = Self::ZERO;
-    const ONE: Self = Self::ONE;
-    const HALF: Self = Self::from_bits(kernels::ONE / 2);
+    const ONE: Self = Saturating(I8F24::ONE);
+    const HALF: Self = Saturating(I8F24::from_bits(kernels::ONE / 2));
     const LEAST: Self = Self::DELTA;
     const LARGEST_COEFFICIENT: f64 = 60.0;
+    const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
     const LONGEST_PATH: f64 = 4.19;
     const SLOW_WORDS: usize = 2;
 
@@ -85,7 +88,7 @@ impl Scalar for Fixed {
         Self::from_bits(nearest(value * UNITS))
     }
     fn to_f64(self) -> f64 {
-        f64::from(self)
+        f64::from(self.0)
     }
     fn to_bits(self) -> u32 {
         self.to_bits() as u32
@@ -97,7 +100,8 @@ impl Scalar for Fixed {
         true
     }
     fn is_saturated(self) -> bool {
-        self == Self::MAX
+        // A sum of sums can end a unit below.
+        self >= Self::from_bits(i32::MAX - 1)
     }
 
     fn factor(value: f64) -> Factor {

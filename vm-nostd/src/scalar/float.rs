@@ -21,6 +21,7 @@ macro_rules! float {
             const HALF: Self = 0.5;
             const LEAST: Self = $least;
             const LARGEST_COEFFICIENT: f64 = f64::MAX;
+            const MAXIMAL_FORCES: (f64, f64) = (0.0, f64::MAX);
             const LONGEST_PATH: f64 = f64::MAX;
             const SLOW_WORDS: usize = 1;
 
