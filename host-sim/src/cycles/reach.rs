@@ -41,7 +41,15 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
         // Conditional branches, and those that an IT block makes conditional, may also go on: a
         // step too many is harmless, one too few is not.
         let (goes_on, target) = match instruction.class {
-            Class::Call => (true, target(text)),
+            // A Cortex-M0 reaches far within a function by BL, and does not come back.
+            Class::Call => {
+                let target = target(text);
+                let home = image.function_at(address);
+                let jumps = target.is_some_and(|to| {
+                    image.function_at(to) == home && home.is_some_and(|home| home.address != to)
+                });
+                (!jumps, target)
+            }
             Class::Branch => (!matches!(mnemonic(text), "b" | "b.w"), target(text)),
             Class::BranchToRegister if mnemonic(text) == "bx" && text.ends_with("lr") => {
                 (false, None)
