@@ -4,6 +4,8 @@
 //! results go are the [`Inputs`] and [`Record`] it is given.
 #![no_std]
 
+#[cfg(feature = "board")]
+pub mod end;
 mod rig;
 mod scenario;
 

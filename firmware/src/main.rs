@@ -9,9 +9,9 @@ mod board;
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m_rt::{entry, exception};
-use cortex_m_semihosting::{debug, hio};
+use cortex_m_semihosting::hio;
 use critical_section::Mutex;
-use firmware::{Record, Rig, Scenario, TICKS, frame_words};
+use firmware::{Record, Rig, Scenario, TICKS, end, frame_words};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// All bits that a tick leaves.
@@ -50,18 +50,11 @@ fn main() -> ! {
     static mut QUEUE: Queue<Frame, WAITING> = Queue::new();
     let (producer, consumer) = QUEUE.split();
     let ready = Rig::at_rest(Scenario::RESTING_PATH).ok().zip(cortex_m::Peripherals::take());
-    if let Some((rig, peripherals)) = ready {
-        let tick = Tick { rig, outlet: Outlet(producer) };
-        critical_section::with(|cs| HANDOVER.replace(cs, Some(tick)));
-        board::start_tick(peripherals);
-        if report(consumer).is_ok() {
-            debug::exit(debug::EXIT_SUCCESS);
-        }
-    }
-    debug::exit(debug::EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    let Some((rig, peripherals)) = ready else { end::finish(false) };
+    let tick = Tick { rig, outlet: Outlet(producer) };
+    critical_section::with(|cs| HANDOVER.replace(cs, Some(tick)));
+    board::start_tick(peripherals);
+    end::finish(report(consumer).is_ok())
 }
 
 /// Sends every frame of the scenario to the host.
@@ -102,7 +95,5 @@ fn SysTick() {
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
+    end::finish(false)
 }

@@ -9,6 +9,8 @@ pub struct Readme;
 #[doc = include_str!("../../vm-nostd/README.md")]
 pub struct ModelReadme;
 
+pub mod muscles;
+
 use host_sim::target::{self, Board, TargetError};
 use std::io::Write;
 use std::path::PathBuf;

@@ -8,13 +8,13 @@ use host_sim::reference::{Input as ReferenceInput, Mode};
 use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use system_tests::muscles::{config, muscles, steps};
 use vm_nostd::{
     ActivationParams, CompressionParams, ContinuousMuscle, ElementParams, ExcitationParams,
     FesMuscle, FiberParams, FiberType, Fixed, ForceLengthParams, ForceVelocityParams, Input,
     IntramuscularFes, Muscle, MuscleParams, NaturalContinuous, ParallelParams, Recruitment,
-    RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, feline_vm4,
-    human_vm4, paper_table_1,
+    RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, human_vm4,
+    paper_table_1,
 };
 
 /// Steady force of the reference, N, at a constant input.
@@ -57,33 +57,11 @@ fn ten_minutes_of_a_constant_input_end_at_the_references_steady_state() {
     }
 }
 
-/// Muscles of every published set, in a wide range of sizes, that fixed point takes.
-fn muscles() -> impl Strategy<Value = MuscleParams<2>> {
-    let sets = prop_oneof![
-        Just((paper_table_1::ELEMENTS, [paper_table_1::SLOW, paper_table_1::FAST])),
-        Just((human_vm4::ELEMENTS, [human_vm4::SUPER_SLOW, human_vm4::FAST])),
-        Just((feline_vm4::ELEMENTS, [feline_vm4::SLOW, feline_vm4::FAST])),
-    ];
-    (sets, 1e-3..1.0_f64, 0.02..0.3_f64, 0.01..0.3_f64, 0.05..0.95_f64, 1.15..1.6)
-        .prop_map(|((elements, types), mass, fascicle, tendon, fraction, longest)| {
-            let mut params = MuscleParams {
-                mass,
-                fascicle_length: fascicle,
-                tendon_length: tendon,
-                max_path_length: fascicle + tendon,
-                recruitment_saturation: 0.8,
-                elements,
-                fibers: [
-                    FiberParams { fraction, fiber_type: types[0] },
-                    FiberParams { fraction: 1.0 - fraction, fiber_type: types[1] },
-                ],
-            };
-            params.max_path_length += (longest - params.maximum_fascicle_length()) * fascicle;
-            params
-        })
-        .prop_filter("a valid muscle", |params| {
-            ContinuousMuscle::<Fixed, 2>::build(params, TimeStep::MILLISECOND).is_ok()
-        })
+/// Muscles that fixed point takes.
+fn fixed_muscles() -> impl Strategy<Value = MuscleParams<2>> {
+    muscles().prop_filter("a valid muscle", |params| {
+        ContinuousMuscle::<Fixed, 2>::build(params, TimeStep::MILLISECOND).is_ok()
+    })
 }
 
 /// A number from `least` to `most`, as likely small as large.
@@ -186,10 +164,6 @@ fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
         })
 }
 
-fn steps() -> impl Strategy<Value = TimeStep> {
-    (1e-4..2e-3_f64).prop_map(|seconds| TimeStep::from_seconds(seconds).expect("in range"))
-}
-
 /// Anything that the bits of an input can be, and often what is inside the domain.
 fn any_bits() -> impl Strategy<Value = (i32, i32, i32)> {
     let activation = prop_oneof![any::<i32>(), 0..=1_i32 << 24, Just(i32::MIN), Just(i32::MAX)];
@@ -256,21 +230,12 @@ fn difference<R: Recruitment<f32, 2>, Q: Recruitment<Fixed, 2>>(
     100.0 * largest / params.max_isometric_force()
 }
 
-fn config(cases: u32) -> ProptestConfig {
-    let default = ProptestConfig::default();
-    let rng_seed = match default.rng_seed {
-        RngSeed::Random => RngSeed::Fixed(0x0066_6978_6564),
-        fixed => fixed,
-    };
-    ProptestConfig { cases, rng_seed, failure_persistence: None, ..default }
-}
-
 proptest! {
     #![proptest_config(config(256))]
 
     #[test]
     fn any_input_leaves_a_state_in_range_and_nothing_wraps_around(
-        params in muscles(),
+        params in fixed_muscles(),
         step in steps(),
         inputs in prop::collection::vec(any_bits(), 1..20),
     ) {
@@ -293,7 +258,7 @@ proptest! {
 
     #[test]
     fn it_is_the_same_muscle_as_in_f32(
-        params in muscles(),
+        params in fixed_muscles(),
         // One thousandth is the threshold of the first type: on it, rounding decides.
         segments in prop::collection::vec((2..=1000_u16, 0.0..=1.0_f64, 0..800_u16), 2..6),
     ) {

@@ -1,71 +1,13 @@
 //! What holds for every valid muscle, whatever its inputs.
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use system_tests::muscles::{TYPES, config, muscles, steps};
 use vm_nostd::{
-    ContinuousMuscle, ElementParams, FesMuscle, FiberParams, FiberType, Input, IntramuscularFes,
-    Muscle, MuscleParams, NaturalContinuous, Output, Recruitment, State, Status, TimeStep,
-    feline_vm4, human_vm4, paper_table_1,
+    ContinuousMuscle, FesMuscle, Input, IntramuscularFes, Muscle, MuscleParams, NaturalContinuous,
+    Output, Recruitment, State, Status, TimeStep,
 };
 
-const TYPES: usize = 2;
-
-/// Always the same cases, so that a failure is of the change and not of chance; another seed with
-/// PROPTEST_RNG_SEED, more cases by the number below.
-fn config(cases: u32) -> ProptestConfig {
-    let default = ProptestConfig::default();
-    let rng_seed = match default.rng_seed {
-        RngSeed::Random => RngSeed::Fixed(0x6d75_7363_6c65),
-        fixed => fixed,
-    };
-    ProptestConfig { cases, rng_seed, failure_persistence: None, ..default }
-}
-
 type Params = MuscleParams<TYPES>;
-
-/// A slow and a fast type of one set, each varied a little.
-fn types() -> impl Strategy<Value = (ElementParams, [FiberType; TYPES])> {
-    let sets = prop_oneof![
-        Just((paper_table_1::ELEMENTS, [paper_table_1::SLOW, paper_table_1::FAST])),
-        Just((human_vm4::ELEMENTS, [human_vm4::SUPER_SLOW, human_vm4::FAST])),
-        Just((human_vm4::ELEMENTS, [human_vm4::SLOW, human_vm4::SLOW])),
-        Just((feline_vm4::ELEMENTS, [feline_vm4::SLOW, feline_vm4::FAST])),
-    ];
-    let share = || 0.8..1.25_f64;
-    (sets, [share(), share(), share(), share(), share()]).prop_map(|((elements, types), vary)| {
-        let varied = types.map(|mut t| {
-            t.half_force_frequency *= vary[0];
-            t.force_velocity.maximum_velocity *= vary[1];
-            t.activation.scale *= vary[2];
-            t.excitation.rise *= vary[3];
-            t.excitation.fall *= vary[4];
-            t
-        });
-        (elements, varied)
-    })
-}
-
-fn muscles() -> impl Strategy<Value = Params> {
-    (types(), 1e-3..1.0_f64, 0.02..0.3_f64, 0.01..0.3_f64, 0.05..0.95_f64, 0.2..1.0_f64, 1.15..1.6)
-        .prop_map(|((elements, types), mass, fascicle, tendon, fraction, saturation, longest)| {
-            let mut params = Params {
-                mass,
-                fascicle_length: fascicle,
-                tendon_length: tendon,
-                max_path_length: fascicle + tendon,
-                recruitment_saturation: saturation,
-                elements,
-                fibers: [
-                    FiberParams { fraction, fiber_type: types[0] },
-                    FiberParams { fraction: 1.0 - fraction, fiber_type: types[1] },
-                ],
-            };
-            // The longest path that lets the passive fascicles reach `longest`.
-            params.max_path_length += (longest - params.maximum_fascicle_length()) * fascicle;
-            params
-        })
-        .prop_filter("a valid muscle", |params| params.validate().is_ok())
-}
 
 /// The force (F0) with which a slack tendon snaps taut between a path that lengthens at 5 L_ce0/s
 /// and fascicles that shorten as fast as they can: that speed times √(stiffness × mass).
@@ -82,10 +24,6 @@ fn snap(params: &Params) -> f64 {
         params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length;
     let mass = 0.5 * params.mass * params.fascicle_length / params.max_isometric_force();
     (5.0 + fastest) * (stiffness * mass).sqrt()
-}
-
-fn steps() -> impl Strategy<Value = TimeStep> {
-    (1e-4..2e-3_f64).prop_map(|seconds| TimeStep::from_seconds(seconds).expect("in range"))
 }
 
 /// What is held for a while: activation, where the path is going (as a share of its range) and

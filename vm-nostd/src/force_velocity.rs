@@ -71,7 +71,8 @@ impl ForceVelocityParams {
         for coefficient in [c0 / v_max, c1 * most / v_max] {
             within("force_velocity.shortening: relative to V_max", coefficient)?;
         }
-        // Evaluated from the last coefficient on; each part is largest at an end.
+        // Evaluated from the last coefficient on: what is monotone is largest at an end, and the
+        // quadratic between them is at most the sum of parts that are checked.
         for length in [least, most] {
             for part in [a0, (a1 + a2 * length) * length, a1, a2 * length] {
                 within("force_velocity.lengthening: relative to b_V", part / b)?;

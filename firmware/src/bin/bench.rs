@@ -9,8 +9,7 @@
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::debug;
-use firmware::MUSCLE;
+use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
 use vm_nostd::{
     Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Output, ParameterError, Recruitment,
@@ -148,18 +147,10 @@ fn literal<R: literal_port::Real + From<f32>>(
 #[entry]
 fn main() -> ! {
     let done = drive_all();
-    debug::exit(if done.is_ok() { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
-    stop()
-}
-
-fn stop() -> ! {
-    loop {
-        cortex_m::asm::wfi();
-    }
+    end::finish(done.is_ok())
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    debug::exit(debug::EXIT_FAILURE);
-    stop()
+    end::finish(false)
 }

@@ -5,9 +5,8 @@
 #![no_main]
 
 use cortex_m_rt::entry;
-use cortex_m_semihosting::debug;
 use cortex_m_semihosting::hio::{self, HostStream};
-use firmware::{Arithmetic, Record, Rig, Scenario, TICKS};
+use firmware::{Arithmetic, Record, Rig, Scenario, TICKS, end};
 use vm_nostd::Fixed;
 
 /// Words that go to the host at once.
@@ -48,18 +47,10 @@ fn main() -> ! {
         let mut outlet = Outlet { host, failed: false };
         run::<Fixed>(&mut outlet) && run::<f32>(&mut outlet)
     });
-    debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
-    stop()
-}
-
-fn stop() -> ! {
-    loop {
-        cortex_m::asm::wfi();
-    }
+    end::finish(done)
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    debug::exit(debug::EXIT_FAILURE);
-    stop()
+    end::finish(false)
 }

@@ -5,7 +5,7 @@
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use firmware::{Arithmetic, Inputs, MUSCLE, Record, Rig, Scenario};
+use firmware::{Arithmetic, Inputs, MUSCLE, Record, Rig, Scenario, end};
 use vm_nostd::{
     ContinuousMuscle, FesMuscle, Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Output,
     Recruitment, Scalar, State, TimeStep,
@@ -76,16 +76,10 @@ fn run() -> Option<()> {
 #[entry]
 fn main() -> ! {
     run();
-    stop()
-}
-
-fn stop() -> ! {
-    loop {
-        cortex_m::asm::wfi();
-    }
+    end::sleep()
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    stop()
+    end::sleep()
 }
