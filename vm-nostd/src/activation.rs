@@ -24,8 +24,6 @@ const LEAST_EXPONENT: f64 = 0.2;
 /// A frequency that rises from 0 as the square of time has changed by four times its value at the
 /// tick's middle; nothing that two lags in a row put out changes faster.
 const STEEPEST: f64 = 4.0;
-/// exp(-exp(4.5)) is 1e-39: nothing beside 1, and a larger power might overflow.
-const SATURATED: f64 = 4.5;
 
 impl ActivationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
@@ -60,7 +58,6 @@ pub(crate) struct ActivationFrequency<S> {
     exponent: [S; 2],
     scale: S,
     steepest: S,
-    saturated: S,
 }
 
 /// Af at one fascicle length, ready for any frequency.
@@ -73,8 +70,6 @@ pub(crate) struct ActivationCurve<S> {
     per_scale: S,
     /// Largest relative change of frequency in a tick.
     steepest: S,
-    /// Logarithm of the power at which Af is 1 to the last bit.
-    saturated: S,
 }
 
 impl<S: Scalar> ActivationFrequency<S> {
@@ -86,7 +81,6 @@ impl<S: Scalar> ActivationFrequency<S> {
             ],
             scale: S::from_f64(params.scale),
             steepest: S::from_f64(STEEPEST),
-            saturated: S::from_f64(SATURATED),
         }
     }
 
@@ -96,10 +90,9 @@ impl<S: Scalar> ActivationFrequency<S> {
         let exponent = constant + slope * reciprocal;
         ActivationCurve {
             exponent,
-            exponent_slope: -((slope * reciprocal).saturating_mul(reciprocal)),
+            exponent_slope: -(slope * reciprocal * reciprocal),
             per_scale: S::ONE.ratio(self.scale * exponent),
             steepest: self.steepest,
-            saturated: self.saturated,
         }
     }
 }
@@ -113,16 +106,12 @@ impl<S: Scalar> ActivationCurve<S> {
         }
         // Keeps the logarithm in its domain.
         let inside = frequency.max(S::LEAST);
-        let logarithm = inside.saturating_mul(self.per_scale).max(S::LEAST).ln();
-        let power = self.exponent.saturating_mul(logarithm).min(self.saturated).exp();
-        let remainder = (-power).exp();
-        // d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
+        let logarithm = (inside * self.per_scale).max(S::LEAST).ln();
+        let (value, growth) = (self.exponent * logarithm).weibull();
+        // By ln of the power it is the growth; d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
         let relative = frequency_change.ratio(inside).max(-self.steepest).min(self.steepest);
-        let exponent_change = self.exponent_slope.saturating_mul(length_change);
-        let change = self
-            .exponent
-            .saturating_mul(relative)
-            .saturating_add((logarithm - S::ONE).saturating_mul(exponent_change));
-        (S::ONE - remainder, (remainder * power).saturating_mul(change))
+        let exponent_change = self.exponent_slope * length_change;
+        let change = self.exponent * relative + (logarithm - S::ONE) * exponent_change;
+        (value, growth * change)
     }
 }

@@ -29,8 +29,8 @@ bitflags::bitflags! {
         const FASCICLE_LENGTH_LIMITED = 1 << 7;
         /// The fascicles were held at the greatest speed the state can have, 60 L_ce0/s.
         const FASCICLE_VELOCITY_LIMITED = 1 << 8;
-        /// The forces on the fascicles were still out of balance by more than 0.25 F0 before the
-        /// last correction of a velocity, as when a path jumps: force is less accurate.
+        /// The forces on the fascicles were out of balance by more than half of F0 at the velocity
+        /// foreseen for a substep, as when a path jumps: force is less accurate.
         const MECHANICS_UNSETTLED = 1 << 9;
         /// The tendon is extended by more than the arithmetic can tell: its force was taken at
         /// the most that it can. Only in fixed point, and at no less than ten times F0.

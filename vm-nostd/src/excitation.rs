@@ -95,8 +95,8 @@ impl<S: Scalar> Excitation<S> {
         slowing: S,
         fascicle_length: S,
     ) -> Excited<S> {
-        let rise_time = (self.rise * fascicle_length * fascicle_length)
-            .saturating_add(self.rise_per_frequency.saturating_mul(frequency));
+        let rise_time =
+            self.rise * fascicle_length * fascicle_length + self.rise_per_frequency * frequency;
         let fall_time = self.fall + self.fall_per_activation * slowing;
         let rising = self.tick.ratio(rise_time);
         let falling = (self.tick * fascicle_length).ratio(fall_time);
@@ -106,10 +106,10 @@ impl<S: Scalar> Excitation<S> {
         let (before, after) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
         // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess.
         let converging = (lead >= S::ZERO) == (excess > S::ZERO);
-        let crosses = converging && lead.abs() < excess.abs().saturating_mul(before);
+        let crosses = converging && lead.abs() < excess.abs() * before;
         let x = if crosses {
             // Before they cross, x grows at one rate, and from then on at the other.
-            let left = S::ONE - lead.abs().ratio(excess.abs().saturating_mul(before));
+            let left = S::ONE - lead.abs().ratio(excess.abs() * before);
             lead.abs().ratio(excess.abs()) + after * left
         } else {
             before

@@ -49,12 +49,10 @@ impl<S: Scalar> ForceLength<S> {
         let offset = (power - S::ONE).scaled(&self.per_width);
         // Keeps the logarithm in its domain; so near to the optimum FL is 1.
         let distance = offset.abs().max(S::LEAST);
-        let exponent = (self.roundness.saturating_mul(distance.ln())).exp();
-        let value = (-exponent).exp();
-        // d|z|^rho/dL = rho |z|^rho / z * dz/dL, with dz/dL = beta L^beta / (L omega).
-        let growth = self.roundness * value * exponent.ratio(distance);
-        let turned = (self.skewness * reciprocal).saturating_mul(power).scaled(&self.per_width);
-        let slope = growth.saturating_mul(turned);
-        (value, if offset < S::ZERO { slope } else { -slope })
+        let (lost, growth) = (self.roundness * distance.ln()).weibull();
+        // By ln |z| it is rho times the growth, with d ln|z|/dL = beta L^beta / (L omega |z|).
+        let turned = (self.skewness * reciprocal * power).scaled(&self.per_width);
+        let slope = (self.roundness * growth).ratio(distance) * turned;
+        (S::ONE - lost, if offset < S::ZERO { slope } else { -slope })
     }
 }

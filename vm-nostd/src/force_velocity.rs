@@ -6,6 +6,7 @@
 //! Both are (1 + n V)/(1 + d V), with n and d chosen by the sign of V.
 
 use crate::error::{ParameterError, within};
+use crate::recruitment::Course;
 use crate::scalar::Scalar;
 
 /// Coefficients of FV.
@@ -122,46 +123,53 @@ impl<S: Scalar> ForceVelocity<S> {
         }
     }
 
-    /// The curve at a fascicle length in L_ce0.
-    pub(crate) fn at(&self, fascicle_length: S) -> VelocityCurve<S> {
+    /// The curve during a tick: at a fascicle length in L_ce0, taken at its middle, that changes by
+    /// `travel` (L_ce0) across it.
+    ///
+    /// Lengthening, FV depends on length as much as FL does: held over the tick, it would cost ten
+    /// times the error at 2 ms.
+    pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
+        let steepness = a1 + (a2 + a2) * fascicle_length;
         VelocityCurve {
             maximum_velocity: self.maximum_velocity,
-            shortening: Branch {
-                numerator: self.per_maximum,
-                denominator: c0 + c1 * fascicle_length,
+            shortening_numerator: self.per_maximum,
+            shortening_denominator: Course {
+                middle: c0 + c1 * fascicle_length,
+                change: c1 * travel,
             },
-            lengthening: Branch {
-                numerator: a0 + (a1 + a2 * fascicle_length) * fascicle_length,
-                denominator: self.per_lengthening,
+            lengthening_numerator: Course {
+                middle: a0 + (a1 + a2 * fascicle_length) * fascicle_length,
+                change: steepness * travel,
             },
+            lengthening_denominator: self.per_lengthening,
         }
     }
 }
 
-/// One branch, (1 + n V)/(1 + d V).
-#[derive(Clone, Copy, Debug)]
-struct Branch<S> {
-    numerator: S,
-    denominator: S,
-}
-
-/// FV at one fascicle length, a function of velocity alone.
+/// FV during one tick. Either branch is (1 + n V)/(1 + d V).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VelocityCurve<S> {
     maximum_velocity: S,
-    shortening: Branch<S>,
-    lengthening: Branch<S>,
+    shortening_numerator: S,
+    shortening_denominator: Course<S>,
+    lengthening_numerator: Course<S>,
+    lengthening_denominator: S,
 }
 
 impl<S: Scalar> VelocityCurve<S> {
-    /// FV, its slope and half its curvature by V on the branch named by `lengthening`, at a
-    /// velocity of that side. Faster than V_max, FV is 0: the paper's own expression would push.
-    pub(crate) fn at(&self, lengthening: bool, velocity: S) -> (S, S, S) {
-        let branch = if lengthening { self.lengthening } else { self.shortening };
+    /// FV, its slope and half its curvature by V, `time` ticks after the tick's middle, on the
+    /// branch named by `lengthening`, at a velocity of that side. Faster than V_max, FV is 0: the
+    /// paper's own expression would push.
+    pub(crate) fn at(&self, time: S, lengthening: bool, velocity: S) -> (S, S, S) {
+        let (numerator, denominator) = if lengthening {
+            (self.lengthening_numerator.at(time), self.lengthening_denominator)
+        } else {
+            (self.shortening_numerator, self.shortening_denominator.at(time))
+        };
         let inside = velocity.max(self.maximum_velocity);
-        let (value, slope, bend) = inside.hyperbola(branch.numerator, branch.denominator);
+        let (value, slope, bend) = inside.hyperbola(numerator, denominator);
         if velocity > self.maximum_velocity {
             (value, slope, bend)
         } else {

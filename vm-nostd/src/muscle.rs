@@ -63,7 +63,6 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     parallel: Parallel<S>,
     compression: Compression<S>,
     contraction: Contraction<S>,
-    passive_floor: S,
     /// F0.
     force: S::Factor,
     max_isometric_force: S::Force,
@@ -109,16 +108,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (least, most) = S::MAXIMAL_FORCES;
         within("mass: F0, N", params.max_isometric_force(), least, most)?;
         let elements = &params.elements;
-        // Without a floor of its own, the passive force ends where nothing will ever push it.
-        let floor = if R::Coefficients::PASSIVE_ONLY_PULLS { 0.0 } else { -100.0 };
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, step),
             fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
             compression: Compression::new(&elements.compression, step),
-            contraction: Contraction::new(params, step),
-            passive_floor: S::from_f64(floor),
+            contraction: Contraction::new(params, step, R::Coefficients::FORCE_JUMPS),
             max_isometric_force: S::ONE.force(&S::force_factor(params.max_isometric_force())),
             force: S::force_factor(params.max_isometric_force()),
             tick_rate: S::factor(1.0 / step.seconds()),
@@ -152,6 +148,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             path_length,
             effective_activation: S::ZERO.slow(),
             fibers: self.fibers.map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
+            activations: [S::ZERO; N],
             recruitment: PhantomData,
         })
     }
@@ -212,16 +209,24 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             excitations,
             &mut state.effective_activation,
             &mut state.fibers,
+            &state.activations,
             &input,
             middle,
         );
-        let contractile = self.contractile(state, &recruited, length, middle, travel);
+        let targets =
+            self.fibers.each_ref().map(|fiber| fiber.yielding.target(state.fascicle_velocity));
+        let contractile = self.contractile(state, &recruited, &targets, length, middle, travel);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
         let extension =
             Course { middle: state.tendon_extension + stretch * S::HALF, change: stretch };
-        let end = self.contraction.advance(state.fascicle_velocity, extension, &contractile);
+        let end = self.contraction.advance::<R::Coefficients, N>(
+            state.fascicle_velocity,
+            extension,
+            &contractile,
+        );
         status.set(Status::MECHANICS_UNSETTLED, !end.settled);
+        status.set(Status::FASCICLE_VELOCITY_LIMITED, end.held);
         let Motion { travel, velocity } = end.motion;
         state.path_length = input.path_length;
         state.fascicle_velocity = velocity;
@@ -229,11 +234,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             state.tendon_extension + stretch - self.contraction.lengthening(travel);
         status |= self.confine(state, middle);
 
-        for (fiber, kept) in self.fibers.iter().zip(&mut state.fibers) {
-            let target = fiber.yielding.target(state.fascicle_velocity);
-            let mean = (kept.yielding_target + target) * S::HALF;
+        for ((fiber, kept), before) in self.fibers.iter().zip(&mut state.fibers).zip(targets) {
+            let mean = (before + fiber.yielding.target(state.fascicle_velocity)) * S::HALF;
             kept.yielding = fiber.yielding.advance(kept.yielding, mean);
-            kept.yielding_target = target;
         }
         let tendon_pull = tendon.pull(state.tendon_extension);
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
@@ -275,6 +278,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         &self,
         state: &mut State<S, R, N>,
         recruited: &[Recruited<S>; N],
+        yielding_targets: &[S; N],
         start: S,
         middle: S,
         travel: S,
@@ -286,31 +290,33 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (compression, compression_slope) = self.compression.at(middle);
         let mut gains = [Course::constant(S::ZERO); N];
         let mut compressed = Course::constant(S::ZERO);
-        let states = state.fibers.iter_mut();
-        for (((gain, fiber), kept), unit) in
-            gains.iter_mut().zip(&self.fibers).zip(states).zip(recruited)
+        let states = state.fibers.iter_mut().zip(&mut state.activations);
+        for ((((gain, fiber), (kept, foreseen)), unit), target) in
+            gains.iter_mut().zip(&self.fibers).zip(states).zip(recruited).zip(yielding_targets)
         {
             let sag = fiber.sag.advance(kept.sag, unit.firing);
-            let yielding = fiber.yielding.advance(kept.yielding, kept.yielding_target);
+            let yielding = fiber.yielding.advance(kept.yielding, *target);
             let before = S::of(kept.yielding) * S::of(kept.sag);
             let after = S::of(yielding) * S::of(sag);
             let modulation = (before + after) * S::HALF;
             kept.sag = sag;
 
             let (activation, activation_change) = fiber.activation.at(reciprocal).at(
-                unit.frequency.middle.saturating_mul(modulation),
-                (unit.frequency.change * modulation)
-                    .saturating_add(unit.frequency.middle.saturating_mul(after - before)),
+                unit.frequency.middle * modulation,
+                unit.frequency.change * modulation + unit.frequency.middle * (after - before),
                 travel,
             );
-            kept.activation = (activation + activation_change).max(S::ZERO).min(S::ONE);
+            *foreseen = (activation + activation_change).max(S::ZERO).min(S::ONE);
 
             let (length_factor, length_slope) = fiber.force_length.at(logarithm, reciprocal);
             let active = activation * length_factor;
             let active_change =
                 activation_change * length_factor + activation * length_slope * travel;
             gain.middle = unit.weight.middle * active;
-            gain.change = unit.weight.change * active + unit.weight.middle * active_change;
+            // A gain that falls fast would pass 0 before the tick's end.
+            let most = gain.middle + gain.middle;
+            let change = unit.weight.change * active + unit.weight.middle * active_change;
+            gain.change = change.max(-most).min(most);
 
             let weight = &unit.compression_weight;
             compressed.middle = compressed.middle + weight.middle * activation;
@@ -321,14 +327,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {
             gains,
-            curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside)),
+            curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside, travel)),
             passive: Course {
                 middle: passive_at_middle
-                    + passive_slope.saturating_mul((start - middle).scaled(&self.tick_rate)),
+                    + passive_slope * (start - middle).scaled(&self.tick_rate),
                 change: compressed.change * compression,
             },
             passive_slope,
-            passive_floor: self.passive_floor,
         }
     }
 }

@@ -28,18 +28,22 @@ pub trait Recruitment<S: Scalar, const N: usize>:
 pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     /// Whether the passive force, filament compression included, is kept from pushing on its own.
     const PASSIVE_ONLY_PULLS: bool;
+    /// Whether the force of the filaments may jump where a tick begins.
+    const FORCE_JUMPS: bool;
 
     fn new(params: &MuscleParams<N>, step: TimeStep) -> Self;
 
     /// Where effective activation, and f_int and f_eff of each type, always are.
     fn ranges(&self) -> (Range<S>, [Range<S>; N]);
 
-    /// Advances effective activation and excitation by one tick at a fascicle length.
+    /// Advances effective activation and excitation by one tick, in the middle of which each type
+    /// has an activation (Af) and the fascicles have a length.
     fn advance(
         &self,
         excitations: [&Excitation<S>; N],
         effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
+        activations: &[S; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N];
@@ -56,6 +60,11 @@ pub struct Course<S> {
 impl<S: Scalar> Course<S> {
     pub(crate) fn constant(value: S) -> Self {
         Self { middle: value, change: S::ZERO }
+    }
+
+    /// The value `time` ticks after the middle.
+    pub(crate) fn at(&self, time: S) -> S {
+        self.middle + self.change * time
     }
 }
 

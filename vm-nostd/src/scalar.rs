@@ -2,6 +2,7 @@
 
 pub(crate) mod fixed;
 pub(crate) mod float;
+mod series;
 
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -17,8 +18,8 @@ pub(crate) mod sealed {
 /// The same source, compiled for any machine, gives the same bits: there is no contraction of
 /// `a * b + c`, and the kernels are portable code.
 ///
-/// The equations are written once, over this trait. Where a fixed-point number could overflow or
-/// lose what is small, they use an operation that says so: [`scaled`](Scalar::scaled) by a constant
+/// The equations are written once, over this trait. Sums and products saturate in fixed point; where
+/// it would lose what is small, they use an operation that says so: [`scaled`](Scalar::scaled) by a constant
 /// of any magnitude, [`Slow`](Scalar::Slow) for what a lag moves, [`ratio`](Scalar::ratio).
 pub trait Scalar:
     sealed::Sealed
@@ -82,12 +83,6 @@ pub trait Scalar:
     /// Times a constant; saturated where that is out of range.
     #[must_use]
     fn scaled(self, factor: &Self::Factor) -> Self;
-    /// The sum; saturated where that is out of range.
-    #[must_use]
-    fn saturating_add(self, other: Self) -> Self;
-    /// The product; saturated where that is out of range.
-    #[must_use]
-    fn saturating_mul(self, other: Self) -> Self;
     /// Divided by a positive number; saturated where that is out of range.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
@@ -100,6 +95,8 @@ pub trait Scalar:
     fn ln(self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
     fn softplus(self) -> (Self, Self);
+    /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm, and its slope.
+    fn weibull(self) -> (Self, Self);
     /// Of `(1 + n self)/(1 + d self)`, whose denominator is positive: value, slope, half its
     /// curvature.
     fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self);

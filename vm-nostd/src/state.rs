@@ -21,6 +21,9 @@ pub struct State<S: Scalar, R, const N: usize> {
     /// U_eff, 0..1; stays 0 in intramuscular FES.
     pub(crate) effective_activation: S::Slow,
     pub(crate) fibers: [FiberState<S>; N],
+    /// Af of each type that the last tick foresaw for the middle of the next, 0..1. Not with the
+    /// rest of a type's state, where in fixed point it would cost padding.
+    pub(crate) activations: [S; N],
     pub(crate) recruitment: PhantomData<R>,
 }
 
@@ -33,12 +36,8 @@ pub struct FiberState<S: Scalar> {
     pub(crate) effective_frequency: S::Slow,
     /// Y, 0..1.
     pub(crate) yielding: S::Slow,
-    /// Where Y tends to at the present velocity, 0..1.
-    pub(crate) yielding_target: S,
     /// S.
     pub(crate) sag: S::Slow,
-    /// Af that the last tick foresaw for the middle of the next, 0..1.
-    pub(crate) activation: S,
 }
 
 impl<S: Scalar> FiberState<S> {
@@ -47,9 +46,7 @@ impl<S: Scalar> FiberState<S> {
             intermediate_frequency: S::ZERO.slow(),
             effective_frequency: S::ZERO.slow(),
             yielding: S::ONE.slow(),
-            yielding_target: S::ONE,
             sag: sag.slow(),
-            activation: S::ZERO,
         }
     }
 }
@@ -85,7 +82,7 @@ impl core::error::Error for RestoreError {}
 
 impl<S: Scalar, R, const N: usize> State<S, R, N> {
     /// How many words the state is saved in.
-    pub const WORDS: usize = 3 + S::SLOW_WORDS + N * (2 + 4 * S::SLOW_WORDS);
+    pub const WORDS: usize = 3 + S::SLOW_WORDS + N * (1 + 4 * S::SLOW_WORDS);
 
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
     pub fn fascicle_velocity(&self) -> S {
@@ -99,17 +96,19 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
     /// extension (L_ce0), fascicle velocity (L_ce0/s), path length, effective activation; then of
-    /// each type f_int, f_eff, Y, S, the target of Y, and the Af foreseen for the next tick.
+    /// each type f_int, f_eff, Y, S, and the Af foreseen for the next tick.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
             self.tendon_extension.to_bits(),
             self.fascicle_velocity.to_bits(),
             S::path_bits(self.path_length),
         ];
-        of_muscle
-            .into_iter()
-            .chain(S::slow_words(self.effective_activation))
-            .chain(self.fibers.into_iter().flat_map(FiberState::words))
+        of_muscle.into_iter().chain(S::slow_words(self.effective_activation)).chain(
+            self.fibers
+                .into_iter()
+                .zip(self.activations)
+                .flat_map(|(fiber, activation)| fiber.words().chain([activation.to_bits()])),
+        )
     }
 
     /// The state whose bits are `words`, if every value is one that a tick can leave behind.
@@ -127,6 +126,7 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
             path_length: saved.path::<S>(&domain.path_length)?,
             effective_activation: saved.slow(&ranges.effective_activation)?,
             fibers: [FiberState::at_rest(S::ONE); N],
+            activations: [S::ZERO; N],
             recruitment: PhantomData,
         };
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
@@ -135,16 +135,15 @@ impl<S: Scalar, R, const N: usize> State<S, R, N> {
         if (length - nearest).abs() > S::from_f64(1e-4) {
             return Err(RestoreError::Value { word: 0 });
         }
-        for (fiber, range) in state.fibers.iter_mut().zip(&ranges.fibers) {
+        let fibers = state.fibers.iter_mut().zip(&mut state.activations);
+        for ((fiber, activation), range) in fibers.zip(&ranges.fibers) {
             *fiber = FiberState {
                 intermediate_frequency: saved.slow(&range.frequency)?,
                 effective_frequency: saved.slow(&range.frequency)?,
                 yielding: saved.slow(&range.yielding)?,
                 sag: saved.slow(&range.sag)?,
-                yielding_target: saved
-                    .number(|value| range.yielding.about_contains(value, S::from_f64(ROUNDING)))?,
-                activation: saved.number(|value| share.contains(value))?,
             };
+            *activation = saved.number(|value| share.contains(value))?;
         }
         if saved.words.next().is_some() {
             return Err(saved.length());
@@ -235,6 +234,5 @@ impl<S: Scalar> FiberState<S> {
             .chain(S::slow_words(self.effective_frequency))
             .chain(S::slow_words(self.yielding))
             .chain(S::slow_words(self.sag))
-            .chain([self.yielding_target.to_bits(), self.activation.to_bits()])
     }
 }

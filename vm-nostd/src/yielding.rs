@@ -56,6 +56,9 @@ impl<S: Scalar> Yielding<S> {
 
     /// Where Y tends to at a fascicle velocity in L_ce0/s.
     pub(crate) fn target(&self, velocity: S) -> S {
+        if self.depth == S::ZERO {
+            return S::ONE;
+        }
         S::ONE - self.depth * (S::ONE - (-velocity.abs().scaled(&self.per_velocity)).exp())
     }
 

@@ -64,6 +64,7 @@ impl<S: Scalar> Unit<S> {
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = false;
+    const FORCE_JUMPS: bool = false;
 
     fn new(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let mut before = 0.0;
@@ -101,6 +102,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         excitations: [&Excitation<S>; N],
         effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
+        activations: &[S; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N] {
@@ -130,8 +132,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             weight: Course::constant(S::ZERO),
             compression_weight: Course::constant(S::ZERO),
         }; N];
-        for (((result, unit), fiber), excitation) in
-            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
+        for ((((result, unit), fiber), excitation), slowing) in
+            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations).zip(activations)
         {
             let drive = unit.firing_frequency(activation);
             let before = fiber.effective_frequency;
@@ -139,7 +141,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 (fiber.intermediate_frequency, before),
                 drive,
                 drive,
-                fiber.activation,
+                *slowing,
                 fascicle_length,
             );
             fiber.intermediate_frequency = excited.intermediate;
@@ -150,7 +152,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 let excess = middle - unit.threshold;
                 let value = middle * of_sum(excess);
                 let slope = middle + excess - count * value;
-                Course { middle: value, change: slope.saturating_mul(relative_change) }
+                Course { middle: value, change: slope * relative_change }
             } else {
                 Course::constant(S::ZERO)
             };

@@ -40,6 +40,8 @@ struct Unit<S: Scalar> {
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = true;
+    /// Af follows the stimulation frequency at once.
+    const FORCE_JUMPS: bool = true;
 
     fn new(params: &MuscleParams<N>, _step: TimeStep) -> Self {
         Self {
@@ -62,6 +64,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         excitations: [&Excitation<S>; N],
         _effective_activation: &mut S::Slow,
         fibers: &mut [FiberState<S>; N],
+        _activations: &[S; N],
         input: &Input<S>,
         fascicle_length: S,
     ) -> [Recruited<S>; N] {

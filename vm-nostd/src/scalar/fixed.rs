@@ -2,17 +2,14 @@
 
 mod kernels;
 mod mantissa;
+mod number;
+
+pub use number::Fixed;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
-use fixed::Saturating;
-use fixed::types::{I8F24, I16F16, I23F9};
-use kernels::{product, quotient, saturate, sum};
-
-/// The number that the model is computed in where there is no floating-point unit: Q8.24, from
-/// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1. Its sums and products saturate: nothing
-/// wraps around.
-pub type Fixed = Saturating<I8F24>;
+use fixed::types::{I16F16, I23F9};
+use kernels::saturate;
 
 /// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +52,8 @@ fn nearest(value: f64) -> i32 {
 
 /// Units of [`I23F9`] in a metre.
 const PATH_UNITS: f64 = 512e6;
+/// 4.5 in Q8.24: exp(-exp(4.5)) is 1e-39, and a larger power would not fit.
+const SATURATED: i32 = 9 << 23;
 const UNITS: f64 = (1 << 24) as f64;
 const FREQUENCY_UNITS: f64 = (1 << 16) as f64;
 /// Q8.56 has 32 bits more behind the point than Q8.24.
@@ -75,10 +74,10 @@ impl Scalar for Fixed {
     /// mN.
     type Force = i32;
 
-    const ZERO: Self = Self::ZERO;
-    const ONE: Self = Saturating(I8F24::ONE);
-    const HALF: Self = Saturating(I8F24::from_bits(kernels::ONE / 2));
-    const LEAST: Self = Self::DELTA;
+    const ZERO: Self = Self::from_bits(0);
+    const ONE: Self = Self::from_bits(kernels::ONE);
+    const HALF: Self = Self::from_bits(kernels::ONE / 2);
+    const LEAST: Self = Self::from_bits(1);
     const LARGEST_COEFFICIENT: f64 = 60.0;
     const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
     const LONGEST_PATH: f64 = 4.19;
@@ -88,7 +87,7 @@ impl Scalar for Fixed {
         Self::from_bits(nearest(value * UNITS))
     }
     fn to_f64(self) -> f64 {
-        f64::from(self.0)
+        f64::from(self.to_bits()) / UNITS
     }
     fn to_bits(self) -> u32 {
         self.to_bits() as u32
@@ -110,14 +109,8 @@ impl Scalar for Fixed {
     fn scaled(self, factor: &Factor) -> Self {
         Self::from_bits(factor.times(self.to_bits()))
     }
-    fn saturating_add(self, other: Self) -> Self {
-        Self::from_bits(sum(self.to_bits(), other.to_bits()))
-    }
-    fn saturating_mul(self, other: Self) -> Self {
-        Self::from_bits(product(self.to_bits(), other.to_bits()))
-    }
     fn ratio(self, divisor: Self) -> Self {
-        Self::from_bits(quotient(self.to_bits().into(), divisor.to_bits().into()))
+        Self::from_bits(kernels::ratio(self.to_bits(), divisor.to_bits()))
     }
 
     fn exp(self) -> Self {
@@ -129,6 +122,11 @@ impl Scalar for Fixed {
     fn softplus(self) -> (Self, Self) {
         let (value, slope) = kernels::softplus(self.to_bits());
         (Self::from_bits(value), Self::from_bits(slope))
+    }
+    fn weibull(self) -> (Self, Self) {
+        let power = Scalar::min(self, Self::from_bits(SATURATED)).exp();
+        let left = (-power).exp();
+        (Self::ONE - left, power * left)
     }
     fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
         let (value, slope, bend) = kernels::hyperbola(self.to_bits(), n.to_bits(), d.to_bits());

@@ -1,10 +1,16 @@
-//! Floating point: kernels from `libm`, the same portable code on host and target.
+//! Floating point: the same portable code on host and target.
+
+mod double;
+mod single;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
 
+/// 1 - exp(-x) in `f64`, accurate near 0, for what is computed when a muscle is built.
+pub(crate) use double::one_minus_exp;
+
 macro_rules! float {
-    ($float:ty, $bits:ty, $least:expr, $exp:path, $exp_m1:path, $ln:path, $ln_1p:path) => {
+    ($float:ty, $bits:ty, $kernels:ident) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
@@ -19,7 +25,7 @@ macro_rules! float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
-            const LEAST: Self = $least;
+            const LEAST: Self = 1e-36;
             const LARGEST_COEFFICIENT: f64 = f64::MAX;
             const MAXIMAL_FORCES: (f64, f64) = (0.0, f64::MAX);
             const LONGEST_PATH: f64 = f64::MAX;
@@ -50,30 +56,21 @@ macro_rules! float {
             fn scaled(self, factor: &Self) -> Self {
                 self * factor
             }
-            fn saturating_add(self, other: Self) -> Self {
-                self + other
-            }
-            fn saturating_mul(self, other: Self) -> Self {
-                self * other
-            }
             fn ratio(self, divisor: Self) -> Self {
                 self / divisor
             }
 
             fn exp(self) -> Self {
-                $exp(self)
+                $kernels::exp(self)
             }
             fn ln(self) -> Self {
-                $ln(self)
+                $kernels::ln(self)
             }
             fn softplus(self) -> (Self, Self) {
-                // One exponential, and no overflow.
-                let decay = $exp(-Scalar::abs(self));
-                // Far below 0 the value itself is tiny, and what balances two such forces is
-                // their ratio.
-                let tail = $ln_1p(decay);
-                let share = 1.0 / (1.0 + decay);
-                if self > 0.0 { (self + tail, share) } else { (tail, decay * share) }
+                $kernels::softplus(self)
+            }
+            fn weibull(self) -> (Self, Self) {
+                $kernels::weibull(self)
             }
             fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
                 let reciprocal = 1.0 / (1.0 + d * self);
@@ -87,6 +84,9 @@ macro_rules! float {
                 self * slope / Scalar::max(reduced, square * 0.5)
             }
 
+            fn abs(self) -> Self {
+                <$float>::abs(self)
+            }
             fn slow(self) -> Self {
                 self
             }
@@ -105,7 +105,7 @@ macro_rules! float {
             }
             fn lags(self) -> [Lags<Self>; 2] {
                 let half = self * 0.5;
-                let done_by_half = -$exp_m1(-half);
+                let done_by_half = $kernels::one_minus_exp(half);
                 let done = done_by_half * (2.0 - done_by_half);
                 [
                     Lags { done: done_by_half, delayed: half * (1.0 - done_by_half) },
@@ -170,10 +170,5 @@ macro_rules! float {
     };
 }
 
-float!(f32, u32, 1e-36, libm::expf, libm::expm1f, libm::logf, libm::log1pf);
-float!(f64, u64, 1e-36, libm::exp, libm::expm1, libm::log, libm::log1p);
-
-/// 1 - exp(-x) in `f64`, accurate near 0, for what is computed when a muscle is built.
-pub(crate) fn one_minus_exp(x: f64) -> f64 {
-    -libm::expm1(-x)
-}
+float!(f32, u32, single);
+float!(f64, u64, double);

@@ -8,23 +8,22 @@ pub(super) const ONE: i32 = 1 << 24;
 const FRACTION: u32 = 24;
 
 /// A 64-bit number of units as a number that fits; the nearest one if it does not.
-///
-/// The least number of all is never one: whatever comes out of here has a negative.
 pub(super) fn saturate(units: i64) -> i32 {
-    units.clamp(-i64::from(i32::MAX), i64::from(i32::MAX)) as i32
-}
-
-/// The sum; saturated.
-pub(super) fn sum(a: i32, b: i32) -> i32 {
-    a.saturating_add(b).max(-i32::MAX)
+    let low = units as i32;
+    // The greatest number, or with every bit turned the least.
+    if i64::from(low) == units { low } else { i32::MAX ^ (units >> 63) as i32 }
 }
 
 /// The product in Q8.24, rounded; saturated.
 ///
 /// # Scaling and overflow
-/// The product of two 32-bit numbers and half a unit fit in 63 bits.
+/// The product of two 32-bit numbers and half a unit fit in 63 bits: Q16.48. It fits in Q8.24 if its
+/// high word has no more than 24 bits, sign included; the test is on words, since a comparison of 64
+/// bits takes as long as all the rest.
 pub(super) fn product(a: i32, b: i32) -> i32 {
-    saturate((i64::from(a) * i64::from(b) + (1 << (FRACTION - 1))) >> FRACTION)
+    let exact = i64::from(a) * i64::from(b) + (1 << (FRACTION - 1));
+    let high = (exact >> 32) as i32;
+    if high << 8 >> 8 == high { (exact >> FRACTION) as i32 } else { i32::MAX ^ (high >> 31) }
 }
 
 /// log2 e in Q2.30, and ln 2 in Q0.32.
@@ -143,43 +142,73 @@ pub(super) fn softplus(x: i32) -> (i32, i32) {
 /// denominator; within 2^-28 of its value and 1 unit. A denominator below a unit counts as one.
 ///
 /// # Scaling and overflow
-/// Both are shifted left until their first bit is set and cut to 32 bits, n and d in Q1.31; the
-/// reciprocal of d is Q0.32, its product with n Q1.63 and below 2^64, as 1/d in Q0.32 is below
-/// 2^32. What is left is a shift by 39 and the difference of the two shifts.
-pub(super) fn quotient(numerator: i64, denominator: i64) -> i32 {
+/// Both are shifted left until their first bit is set, n and d in Q1.31; see [`of_mantissas`].
+pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
+    let (n, d) = (numerator.unsigned_abs(), denominator.max(1) as u32);
+    let (zeros, denominator_zeros) = (n.leading_zeros(), d.leading_zeros());
+    if n == 0 {
+        return 0;
+    }
+    let shift = 39 + zeros as i32 - denominator_zeros as i32;
+    of_mantissas(n << zeros, d << denominator_zeros, shift, numerator < 0)
+}
+
+/// The same for 64-bit numbers in one format.
+///
+/// # Scaling and overflow
+/// Both are shifted left until their first bit is set and cut to 32 bits.
+fn quotient(numerator: i64, denominator: i64) -> i32 {
     if numerator == 0 {
         return 0;
     }
-    let denominator = denominator.max(1) as u64;
-    let magnitude = numerator.unsigned_abs();
-    let (zeros, denominator_zeros) = (magnitude.leading_zeros(), denominator.leading_zeros());
-    let n = (magnitude << zeros >> 32) as u32;
-    let d = (denominator << denominator_zeros >> 32) as u32;
-    let product = u64::from(n) * u64::from(mantissa::reciprocal(d));
+    let (n, d) = (numerator.unsigned_abs(), denominator.max(1) as u64);
+    let (zeros, denominator_zeros) = (n.leading_zeros(), d.leading_zeros());
+    let (n, d) = ((n << zeros >> 32) as u32, (d << denominator_zeros >> 32) as u32);
     let shift = 39 + zeros as i32 - denominator_zeros as i32;
-    let units = match shift {
-        ..=31 => i64::from(i32::MAX),
-        // Half a unit first: the sum of a product below 2^64 might pass it.
-        32..=63 => ((product >> (shift - 1)) as i64 + 1) >> 1,
-        _ => 0,
-    };
-    saturate(if numerator < 0 { -units } else { units })
+    of_mantissas(n, d, shift, numerator < 0)
 }
 
-/// (1 + n v)/(1 + d v): value, slope and half its curvature, each saturated.
+/// n/d of mantissas in Q1.31, as a product in Q1.63 shifted right by `shift`.
 ///
 /// # Scaling and overflow
-/// n v and d v are exact in Q16.48; with |n|, |d| < 128 and |v| <= 60 they are below 2^61, and
-/// the sums with 1 below 2^62.
+/// The reciprocal of d is Q0.32 and below 2^32, its product with n Q1.63 and below 2^64. What is
+/// left is a shift by 39 and the difference of the two shifts that made the mantissas.
+fn of_mantissas(n: u32, d: u32, shift: i32, negative: bool) -> i32 {
+    let product = u64::from(n) * u64::from(mantissa::reciprocal(d));
+    let magnitude = match shift {
+        ..=31 => i32::MAX,
+        // Half a unit first: the sum of a product below 2^64 might pass it.
+        32..=63 => (((product >> (shift - 1)) + 1) >> 1).min(i32::MAX as u64) as i32,
+        _ => 0,
+    };
+    if negative { -magnitude } else { magnitude }
+}
+
+/// (1 + n v)/(1 + d v): value, slope and half its curvature, each saturated. A denominator below
+/// 2^-7 counts as that.
+///
+/// # Scaling and overflow
+/// n v and d v are Q16.48, and with |n|, |d| < 128 and |v| <= 128 at most 2^62. A numerator is cut
+/// to Q12.20, a denominator to that or, below 8, to Q4.28; beyond 2048 they saturate, which is
+/// beyond the speed of any muscle. The denominator with f bits behind the point, shifted left by z
+/// until its first bit is set, is a mantissa; its reciprocal in Q0.32, shifted right by 39 - f - z,
+/// is 1/d in Q8.24. That shift is 1 to 18: at the least denominator, 2^-7, z is 10, and at the
+/// greatest 1.
 pub(super) fn hyperbola(v: i32, n: i32, d: i32) -> (i32, i32, i32) {
     const ONE_48: i64 = 1 << 48;
-    let numerator = ONE_48 + i64::from(n) * i64::from(v);
-    let denominator = (ONE_48 + i64::from(d) * i64::from(v)).max(1);
-    let reciprocal = quotient(ONE_48, denominator);
-    let value = quotient(numerator, denominator);
+    const LEAST: i64 = ONE_48 >> 7;
+    let denominator = (ONE_48 + i64::from(d) * i64::from(v)).max(LEAST);
+    let fraction = if denominator < 8 * ONE_48 { 28 } else { 20 };
+    let denominator = saturate(denominator >> (48 - fraction)) as u32;
+    let zeros = denominator.leading_zeros();
+    let shift = 39 - fraction - zeros;
+    let reciprocal = mantissa::reciprocal(denominator << zeros);
+    let reciprocal = ((u64::from(reciprocal) + (1 << (shift - 1))) >> shift) as i32;
+    let numerator = saturate((ONE_48 + i64::from(n) * i64::from(v)) >> 28);
+    let value = saturate((i64::from(numerator) * i64::from(reciprocal)) >> 20);
     let slope = product(product(n.saturating_sub(d), reciprocal), reciprocal);
     let bend = product(product(d, slope), reciprocal);
-    (value, slope, -bend)
+    (value, slope, bend.saturating_neg())
 }
 
 /// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's; saturated.

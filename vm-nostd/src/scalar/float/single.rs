@@ -1,0 +1,237 @@
+//! Kernels in `f32`: short polynomials, and cubic pieces from tables made when the crate is
+//! compiled. Their bounds are asserted over their whole domains.
+
+use crate::scalar::series;
+
+/// 1.5 × 2^23: added to a number below 2^22, it leaves the nearest whole number in the last bits.
+const ROUNDING: f32 = 12_582_912.0;
+/// ln 2 in two parts, of which the first has few bits.
+const LN_2_HIGH: f32 = 0.693_359_4;
+const LN_2_LOW: f32 = -2.121_944_4e-4;
+/// Exponents of e at which the result is still a normal number.
+const LEAST_EXPONENT: f32 = -87.0;
+const MOST_EXPONENT: f32 = 88.0;
+
+/// e^x, within 2.1e-7 of its value, for -87 <= x <= 88; beyond, as at the nearest of these.
+pub(super) fn exp(x: f32) -> f32 {
+    let x = if x > LEAST_EXPONENT { x } else { LEAST_EXPONENT };
+    let x = if x < MOST_EXPONENT { x } else { MOST_EXPONENT };
+    let shifted = x * core::f32::consts::LOG2_E + ROUNDING;
+    let twos = shifted - ROUNDING;
+    let r = (x - twos * LN_2_HIGH) - twos * LN_2_LOW;
+    // Minimax for (e^r - 1 - r)/r² on |r| <= ln 2/2.
+    let series = 0.499_991_47 + r * (0.166_664_59 + r * (0.041_898_31 + r * 0.008_374_51));
+    let mantissa = 1.0 + (r + r * r * series);
+    f32::from_bits(mantissa.to_bits().wrapping_add(shifted.to_bits() << 23))
+}
+
+/// 1 - e^-x for x >= 0, within 4e-7 of its value up to x = 8; beyond, as there.
+pub(super) fn one_minus_exp(x: f32) -> f32 {
+    // In an eighth of x, and then three times 1 - (1 - y)².
+    let u = if x < 8.0 { x * 0.125 } else { 1.0 };
+    // Minimax for (1 - e^-u)/u on 0 <= u <= 1.
+    let series = 0.999_999_94
+        + u * (-0.499_995_36
+            + u * (0.166_611_24
+                + u * (-0.041_423_16 + u * (0.007_842_377 + u * -0.000_914_548_2))));
+    let eighth = u * series;
+    let quarter = eighth * (2.0 - eighth);
+    let half = quarter * (2.0 - quarter);
+    half * (2.0 - half)
+}
+
+const LOGARITHM_BITS: u32 = 5;
+const LOGARITHMS: usize = 1 << LOGARITHM_BITS;
+const FRACTION_BITS: u32 = 23;
+
+/// Of each 32nd of the mantissas 1 to 2: a reciprocal 1/c of its middle, and ln c, both to `f32`.
+static MANTISSAS: [(f32, f32); LOGARITHMS] = {
+    let mut table = [(0.0, 0.0); LOGARITHMS];
+    let mut index = 0;
+    while index < LOGARITHMS {
+        let reciprocal = (64.0 / (64.0 + 2.0 * index as f64 + 1.0)) as f32;
+        // The logarithm of what the rounded reciprocal stands for.
+        table[index] = (reciprocal, -series::ln_1p(reciprocal as f64 - 1.0) as f32);
+        index += 1;
+    }
+    table
+};
+
+/// ln x of a positive normal number, within 1.5e-7 and 1e-7 of its value.
+pub(super) fn ln(x: f32) -> f32 {
+    let bits = x.to_bits();
+    let exponent = (bits >> FRACTION_BITS) as i32 - 127;
+    let index = (bits >> (FRACTION_BITS - LOGARITHM_BITS)) as usize & (LOGARITHMS - 1);
+    let mantissa = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000);
+    let (reciprocal, logarithm) = MANTISSAS[index];
+    let r = mantissa * reciprocal - 1.0;
+    // |r| <= 1/64: the series is cut at r⁵/5 < 2e-10.
+    let series = r - r * r * (0.5 - r * (0.333_333_34 - r * 0.25));
+    let twos = exponent as f32;
+    twos * LN_2_HIGH + (logarithm + (series + twos * LN_2_LOW))
+}
+
+/// The cubic through values and slopes at both ends of a piece of a length, as a polynomial in the
+/// share of the piece, constant first.
+const fn hermite(length: f64, start: (f64, f64), end: (f64, f64)) -> [f32; 4] {
+    let (a, b) = (start.0, start.1 * length);
+    let (rise, last) = (end.0 - start.0, end.1 * length);
+    [a as f32, b as f32, (3.0 * rise - 2.0 * b - last) as f32, (b + last - 2.0 * rise) as f32]
+}
+
+/// Value of a function in pieces, and its slope by pieces, at `place` pieces from the start of the
+/// first; beyond the last by no more than rounding.
+fn piecewise<const N: usize>(pieces: &[[f32; 4]; N], place: f32) -> (f32, f32) {
+    let index = (place as usize).min(N - 1);
+    let share = place - index as f32;
+    let [a, b, c, d] = pieces[index];
+    let value = a + share * (b + share * (c + share * d));
+    let slope = b + share * ((c + c) + share * (3.0 * d));
+    (value, slope)
+}
+
+const SOFTPLUS_LEAST: i32 = -32;
+const SOFTPLUS_PER_UNIT: u32 = 4;
+const SOFTPLUS_PIECES: usize = 32 * SOFTPLUS_PER_UNIT as usize;
+
+static SOFTPLUS: [[f32; 4]; SOFTPLUS_PIECES] = {
+    const fn node(index: usize) -> (f64, f64) {
+        let power = series::exp(SOFTPLUS_LEAST as f64 + index as f64 / SOFTPLUS_PER_UNIT as f64);
+        (series::ln_1p(power), power / (1.0 + power))
+    }
+    let mut table = [[0.0; 4]; SOFTPLUS_PIECES];
+    let mut index = 0;
+    while index < SOFTPLUS_PIECES {
+        table[index] = hermite(1.0 / SOFTPLUS_PER_UNIT as f64, node(index), node(index + 1));
+        index += 1;
+    }
+    table
+};
+
+/// ln(e^x + 1), within 2e-6 and within 2e-5 of its value, and its slope, within 3e-5; for x < -32
+/// as there.
+pub(super) fn softplus(x: f32) -> (f32, f32) {
+    // The two tails differ by x.
+    let place = (-SOFTPLUS_LEAST as f32 - x.abs()) * SOFTPLUS_PER_UNIT as f32;
+    let (tail, slope) = piecewise(&SOFTPLUS, if place > 0.0 { place } else { 0.0 });
+    let slope = slope * SOFTPLUS_PER_UNIT as f32;
+    if x > 0.0 { (x + tail, 1.0 - slope) } else { (tail, slope) }
+}
+
+const WEIBULL_LEAST: i32 = -16;
+const WEIBULL_MOST: i32 = 3;
+const WEIBULL_PER_UNIT: u32 = 8;
+const WEIBULL_PIECES: usize = (WEIBULL_MOST - WEIBULL_LEAST) as usize * WEIBULL_PER_UNIT as usize;
+
+static WEIBULL: [[f32; 4]; WEIBULL_PIECES] = {
+    const fn node(index: usize) -> (f64, f64) {
+        let power = series::exp(WEIBULL_LEAST as f64 + index as f64 / WEIBULL_PER_UNIT as f64);
+        (series::one_minus_exp(power), power * series::exp(-power))
+    }
+    let mut table = [[0.0; 4]; WEIBULL_PIECES];
+    let mut index = 0;
+    while index < WEIBULL_PIECES {
+        table[index] = hermite(1.0 / WEIBULL_PER_UNIT as f64, node(index), node(index + 1));
+        index += 1;
+    }
+    table
+};
+
+/// 1 - e^-e^x, within 2e-6 of its value, and its slope, within 3e-5, for -16 <= x <= 3; beyond, as
+/// at the nearest of these.
+pub(super) fn weibull(x: f32) -> (f32, f32) {
+    let place = (x - WEIBULL_LEAST as f32) * WEIBULL_PER_UNIT as f32;
+    let place = if place > 0.0 { place } else { 0.0 };
+    let most = WEIBULL_PIECES as f32;
+    let (value, slope) = piecewise(&WEIBULL, if place < most { place } else { most });
+    (value, slope * WEIBULL_PER_UNIT as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest of `error` over numbers from `least` to `most`, evenly spaced, and near both
+    /// ends.
+    fn worst(least: f64, most: f64, error: impl Fn(f32, f64) -> f64) -> f64 {
+        const COUNT: u32 = 1_000_000;
+        let spaced = (0..=COUNT).map(|i| least + (most - least) * f64::from(i) / f64::from(COUNT));
+        let near = (0..2000).map(|i| f64::from(i) * 1e-7 * (most - least));
+        let all = spaced.chain(near.clone().map(|d| least + d)).chain(near.map(|d| most - d));
+        all.map(|x| x as f32).fold(0.0, |worst, x| {
+            let error = error(x, f64::from(x));
+            if error.is_nan() { error } else { worst.max(error) }
+        })
+    }
+
+    #[test]
+    fn tables_take_4_7_kib() {
+        let bytes = size_of_val(&MANTISSAS) + size_of_val(&SOFTPLUS) + size_of_val(&WEIBULL);
+        assert_eq!(bytes, 4736);
+    }
+
+    #[test]
+    fn exponentials_are_within_21e8th_of_their_value() {
+        let error = |x: f32, exact: f64| (f64::from(exp(x)) / exact.exp() - 1.0).abs();
+        let found = worst(-87.0, 88.0, error);
+        assert!(found <= 2.1e-7, "{found:e}");
+        assert_eq!(exp(-1e30), exp(-87.0));
+        assert_eq!(exp(f32::INFINITY), exp(88.0));
+    }
+
+    #[test]
+    fn what_a_lag_has_done_is_within_4e7th_of_its_value() {
+        let error = |x: f32, exact: f64| {
+            let exact = -(-exact).exp_m1();
+            (f64::from(one_minus_exp(x)) - exact).abs() / exact.max(1e-30)
+        };
+        let found = worst(1e-9, 8.0, error);
+        assert!(found <= 4e-7, "{found:e}");
+        assert_eq!(one_minus_exp(0.0), 0.0);
+        assert!((one_minus_exp(50.0) - 1.0).abs() < 4e-4);
+    }
+
+    #[test]
+    fn logarithms_are_within_15e8th_and_1e7th_of_their_value() {
+        for scale in [-120, -24, -3, -1, 0, 1, 5, 90] {
+            let power = 2_f64.powi(scale);
+            let error = |x: f32, exact: f64| {
+                let exact = exact.ln();
+                (f64::from(ln(x)) - exact).abs() - 1e-7 * exact.abs()
+            };
+            let found = worst(power, 2.0 * power, error);
+            assert!(found <= 1.5e-7, "{found:e} at 2^{scale}");
+        }
+    }
+
+    #[test]
+    fn softplus_is_within_2e6th_and_2e5th_of_its_value_and_its_slope_within_3e5th() {
+        let error = |x: f32, exact: f64| {
+            let expected = exact.max(0.0) + (-exact.abs()).exp().ln_1p();
+            let slope = 1.0 / (1.0 + (-exact).exp());
+            let (value, steepness) = softplus(x);
+            let relative = (f64::from(value) - expected).abs() / expected;
+            let absolute = (f64::from(value) - expected).abs() - 1e-7 * exact.max(0.0);
+            (relative / 2e-5).max(absolute / 2e-6).max((f64::from(steepness) - slope).abs() / 3e-5)
+        };
+        let found = worst(-32.0, 60.0, error);
+        assert!(found <= 1.0, "{found} of the bounds");
+        assert_eq!(softplus(-1e30), softplus(-32.0));
+        assert_eq!(softplus(1e30), (1e30, 1.0));
+    }
+
+    #[test]
+    fn weibulls_distribution_is_within_2e6th_of_its_value_and_its_slope_within_3e5th() {
+        let error = |x: f32, exact: f64| {
+            let power = exact.exp();
+            let expected = -(-power).exp_m1();
+            let (value, slope) = weibull(x);
+            let relative = (f64::from(value) - expected).abs() / expected;
+            (relative / 2e-6).max((f64::from(slope) - power * (-power).exp()).abs() / 3e-5)
+        };
+        let found = worst(-16.0, 3.0, error);
+        assert!(found <= 1.0, "{found} of the bounds");
+        assert_eq!(weibull(-1e30), weibull(-16.0));
+        assert_eq!(weibull(1e30), weibull(3.0));
+    }
+}
