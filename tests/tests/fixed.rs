@@ -122,7 +122,7 @@ fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
     ];
     let size = (magnitude(1e-5, 20.0), magnitude(5e-3, 1.0), magnitude(1e-3, 2.0), 0.8..2.0_f64);
     let tendon = (magnitude(1.0, 200.0), magnitude(1e-3, 0.05), 0.5..1.5_f64);
-    let parallel = (magnitude(1.0, 200.0), magnitude(0.01, 0.3), 0.8..1.5_f64, 0.0..1.0_f64);
+    let parallel = (magnitude(1.0, 200.0), magnitude(0.01, 0.3), 0.8..1.5_f64, 0.001..1.0_f64);
     let compression = (-1.0..0.0_f64, -40.0..-1.0_f64, 0.4..1.0_f64);
     let other = (magnitude(1e4, 1e7), 0.001..0.999_f64, 0.01..1.0_f64);
     (types, size, tendon, parallel, compression, other)

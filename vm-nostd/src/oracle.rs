@@ -203,6 +203,10 @@ fn force_velocity_is_the_papers_on_both_branches() {
                     at64(v).0,
                     exact,
                 );
+                // Half a tick later, with the length gone half of its way.
+                let later = f64.at(l, 2e-3).at(0.5, v > 0.0, v).0;
+                let there = f64.at(l + 1e-3, 0.0).at(0.0, v > 0.0, v).0;
+                assert!((later - there).abs() < 2e-5, "L {l}, V {v}: {later} {there}");
                 if v.abs() > 1e-5 && v > p.maximum_velocity + 1e-5 {
                     let steepness = at64(v).1;
                     let by_difference = slope(|v| at64(v).0, v);

@@ -16,7 +16,7 @@ pub struct ParallelParams {
     /// Length at which it becomes taut L_r1, L_max; 0.8 to 1.5.
     #[doc(alias = "Lr1")]
     pub slack_length: f64,
-    /// Viscosity eta, F0 s/L_ce0; 0 to 1.
+    /// Viscosity eta, F0 s/L_ce0; 0.001 to 1.
     #[doc(alias = "eta")]
     pub viscosity: f64,
 }
@@ -35,12 +35,16 @@ pub struct CompressionParams {
     pub onset_length: f64,
 }
 
+/// The passive force is straight within a tick. Where nothing damps a passive muscle that rings, what
+/// it gains from this tick by tick would never be lost again.
+const LEAST_VISCOSITY: f64 = 1e-3;
+
 impl ParallelParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("parallel.stiffness", self.stiffness, 1.0, 200.0)?;
         within("parallel.toe", self.toe, 0.01, 0.3)?;
         within("parallel.slack_length", self.slack_length, 0.8, 1.5)?;
-        within("parallel.viscosity", self.viscosity, 0.0, 1.0)
+        within("parallel.viscosity", self.viscosity, LEAST_VISCOSITY, 1.0)
     }
 
     /// F_pe1 in F0 at V = 0 for a fascicle length in L_max.
