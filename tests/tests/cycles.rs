@@ -7,9 +7,9 @@ use host_sim::target::STM32F405;
 use std::path::Path;
 use system_tests::{build, skip};
 
-/// Profile of a direct call of libm's `expf(1.5)`.
+/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles.
 fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, ProfileError> {
-    of_image(image, "expf", Some(&[Argument::Float(1.5)]), machine, tracer)
+    of_image(image, "libm::math::exp::exp", Some(&[Argument::Double(1.5)]), machine, tracer)
 }
 
 #[test]
@@ -29,9 +29,9 @@ fn the_plugin_and_the_log_show_the_same_execution() {
     };
     assert_eq!(profiles[0].calls, profiles[1].calls);
     assert_eq!(profiles[0].executions, profiles[1].executions);
-    // The design's figure for it is 105 cycles, by another estimator and compiler.
+    // The design's figure for it is 3748 cycles, by another estimator and compiler.
     let typical = profiles[0].calls[0].cycles[1];
-    assert!((95..=115).contains(&typical), "{typical}");
+    assert!((3400..=4100).contains(&typical), "{typical}");
 }
 
 #[test]

@@ -17,6 +17,7 @@ use crate::force_velocity::VelocityCurve;
 use crate::params::MuscleParams;
 use crate::recruitment::{Course, RecruitmentTick};
 use crate::scalar::Scalar;
+use crate::scalar::float::{square_root, tangent};
 use crate::tendon::Tendon;
 use crate::time_step::TimeStep;
 
@@ -111,8 +112,8 @@ impl<S: Scalar> Substep<S> {
         let half = 0.5 * seconds;
         let inertia = mass / half;
         // Half the phase that the ringing turns by; tan of it is what the midpoint rule sees.
-        let phase = Scalar::min(half * libm::sqrt(stiffness / mass), FASTEST_RINGING);
-        let share = phase / libm::tan(phase);
+        let phase = Scalar::min(half * square_root(stiffness / mass), FASTEST_RINGING);
+        let share = phase / tangent(phase);
         let fitted = inertia * (1.0 - share * share) / (stiffness * half);
         Self {
             share: S::from_f64(seconds / step.seconds()),
@@ -396,7 +397,7 @@ mod tests {
         let half = 0.125e-3;
         let inertia = substep.inertia - substep.fitted * (stiffness * half);
         // The midpoint rule turns the phase by 2 atan(h/2 sqrt(stiffness/mass)).
-        let found = libm::atan(libm::sqrt(stiffness * half / inertia));
-        assert!((found - half * libm::sqrt(stiffness / mass)).abs() < 1e-12, "{found}");
+        let found = (stiffness * half / inertia).sqrt().atan();
+        assert!((found - half * (stiffness / mass).sqrt()).abs() < 1e-12, "{found}");
     }
 }

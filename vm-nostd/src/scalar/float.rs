@@ -6,8 +6,8 @@ mod single;
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
 
-/// 1 - exp(-x) in `f64`, accurate near 0, for what is computed when a muscle is built.
-pub(crate) use double::one_minus_exp;
+/// In `f64`, for what is computed when a muscle is built.
+pub(crate) use double::{one_minus_exp, square_root, tangent};
 
 macro_rules! float {
     ($float:ty, $bits:ty, $kernels:ident) => {

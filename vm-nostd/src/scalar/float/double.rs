@@ -27,6 +27,14 @@ pub(super) fn weibull(x: f64) -> (f64, f64) {
 /// e^-e^5 is 1e-64: nothing beside 1, and a larger power might overflow.
 const MOST: f64 = 5.0;
 
+pub(crate) fn square_root(x: f64) -> f64 {
+    libm::sqrt(x)
+}
+
+pub(crate) fn tangent(x: f64) -> f64 {
+    libm::tan(x)
+}
+
 /// 1 - e^-x for x >= 0, accurate near 0.
 pub(crate) fn one_minus_exp(x: f64) -> f64 {
     -libm::expm1(-x)
