@@ -126,8 +126,8 @@ impl<S: Scalar> ForceVelocity<S> {
     /// The curve during a tick: at a fascicle length in L_ce0, taken at its middle, that changes by
     /// `travel` (L_ce0) across it.
     ///
-    /// Lengthening, FV depends on length as much as FL does: held over the tick, it would cost ten
-    /// times the error at 2 ms.
+    /// Lengthening, FV depends on length as much as FL does: held over the tick, it would make
+    /// nearly all of the error at 2 ms.
     pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;

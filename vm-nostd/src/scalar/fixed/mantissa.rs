@@ -3,6 +3,8 @@
 //! Both start from the same table: c = 1/m at the middle of the 32nd of the range that m is in,
 //! and then go on with r = m c - 1, |r| < 1/64.
 
+use crate::scalar::series;
+
 /// Bits of the index into the tables.
 const INDEX_BITS: u32 = 5;
 const ENTRIES: usize = 1 << INDEX_BITS;
@@ -24,24 +26,16 @@ static LOGARITHMS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = 0;
     while index < ENTRIES {
-        table[index] = (4_294_967_296.0 * -logarithm(RECIPROCALS[index] as f64 / 4_294_967_296.0)
-            + 0.5) as u32;
+        let below_one = RECIPROCALS[index] as f64 / 4_294_967_296.0 - 1.0;
+        table[index] = (4_294_967_296.0 * -series::ln_1p(below_one) + 0.5) as u32;
         index += 1;
     }
     table
 };
 
-/// ln x for x around 1, by the series of 2 artanh((x - 1)/(x + 1)); for tables, when compiled.
-const fn logarithm(x: f64) -> f64 {
-    let z = (x - 1.0) / (x + 1.0);
-    let (mut power, mut sum, mut n) = (z, 0.0, 1.0);
-    while n < 60.0 {
-        sum += power / n;
-        power *= z * z;
-        n += 2.0;
-    }
-    2.0 * sum
-}
+/// What the two tables take.
+#[cfg(test)]
+pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 
 /// The high half of a product of signed 32-bit fractions.
 fn high(a: i32, b: i32) -> i32 {

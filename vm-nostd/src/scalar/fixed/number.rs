@@ -8,8 +8,8 @@ use fixed::types::I8F24;
 /// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1. Its sums and products saturate: nothing
 /// wraps around.
 ///
-/// It is an [`I8F24`], and comes from and turns into one. That type's own saturating product takes
-/// 27 instructions of a Cortex-M4 wherever it stands; the one here takes 20, once, and rounds.
+/// It is an [`I8F24`], and comes from and turns into one. That type's own saturating product cuts
+/// off, and is inlined wherever it stands; the one here rounds, and is called.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fixed(I8F24);
 
@@ -60,7 +60,7 @@ impl Neg for Fixed {
 
 impl Mul for Fixed {
     type Output = Self;
-    // Called, not inlined: there are some two hundred places, and 6 KiB between the two.
+    // Called, not inlined: there are so many places that the code would be half as long again.
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         Self::from_bits(product(self.to_bits(), other.to_bits()))

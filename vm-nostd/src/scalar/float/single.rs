@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_take_4_7_kib() {
+    fn tables_take_4736_bytes() {
         let bytes = size_of_val(&MANTISSAS) + size_of_val(&SOFTPLUS) + size_of_val(&WEIBULL);
         assert_eq!(bytes, 4736);
     }
