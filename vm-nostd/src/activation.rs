@@ -91,7 +91,7 @@ impl<S: Scalar> ActivationFrequency<S> {
         ActivationCurve {
             exponent,
             exponent_slope: -(slope * reciprocal * reciprocal),
-            per_scale: S::ONE.ratio(self.scale * exponent),
+            per_scale: (self.scale * exponent).reciprocal(),
             steepest: self.steepest,
         }
     }

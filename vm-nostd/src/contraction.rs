@@ -66,11 +66,11 @@ pub(crate) struct Advanced<S> {
 /// F_ce' = max(0, passive + Σ gain_i FV_i), forces in F0; in some modes the passive force is itself
 /// 0 at least.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Contractile<S, const N: usize> {
+pub(crate) struct Contractile<'a, S, const N: usize> {
     /// What multiplies FV of each type; never negative.
     pub(crate) gains: [Course<S>; N],
     /// FV of each type.
-    pub(crate) curves: [VelocityCurve<S>; N],
+    pub(crate) curves: [VelocityCurve<'a, S>; N],
     /// Passive force at the length the tick starts with and V = 0.
     pub(crate) passive: Course<S>,
     /// Its slope, F0 per tick at 1 L_ce0/s.
@@ -208,7 +208,7 @@ impl<S: Scalar> Contraction<S> {
         &self,
         velocity: S,
         extension: Course<S>,
-        contractile: &Contractile<S, N>,
+        contractile: &Contractile<'_, S, N>,
     ) -> Advanced<S> {
         let tick = Tick {
             contraction: self,
@@ -235,7 +235,7 @@ impl<S: Scalar> Contraction<S> {
 /// One tick of the mechanics.
 struct Tick<'a, S: Scalar, const N: usize> {
     contraction: &'a Contraction<S>,
-    contractile: &'a Contractile<S, N>,
+    contractile: &'a Contractile<'a, S, N>,
     extension: Course<S>,
     /// L_ce0/s.
     path_speed: S,

@@ -3,7 +3,7 @@
 //! V <= 0: (Vmax - V)/(Vmax + (cV0 + cV1 L) V);
 //! V > 0: (bV - (aV0 + aV1 L + aV2 L²) V)/(bV + V).
 //!
-//! Both are (1 + n V)/(1 + d V), with n and d chosen by the sign of V.
+//! Both are (1 + n V)/(1 + d V) = 1 + (n - d) V/(1 + d V), with n and d chosen by the sign of V.
 
 use crate::error::{ParameterError, within};
 use crate::recruitment::Course;
@@ -128,50 +128,50 @@ impl<S: Scalar> ForceVelocity<S> {
     ///
     /// Lengthening, FV depends on length as much as FL does: held over the tick, it would make
     /// nearly all of the error at 2 ms.
-    pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
+    pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<'_, S> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
         let steepness = a1 + (a2 + a2) * fascicle_length;
         VelocityCurve {
-            maximum_velocity: self.maximum_velocity,
-            shortening_numerator: self.per_maximum,
-            shortening_denominator: Course {
-                middle: c0 + c1 * fascicle_length,
-                change: c1 * travel,
-            },
-            lengthening_numerator: Course {
+            relation: self,
+            shortening: Course { middle: c0 + c1 * fascicle_length, change: c1 * travel },
+            lengthening: Course {
                 middle: a0 + (a1 + a2 * fascicle_length) * fascicle_length,
                 change: steepness * travel,
             },
-            lengthening_denominator: self.per_lengthening,
         }
     }
 }
 
 /// FV during one tick. Either branch is (1 + n V)/(1 + d V).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct VelocityCurve<S> {
-    maximum_velocity: S,
-    shortening_numerator: S,
-    shortening_denominator: Course<S>,
-    lengthening_numerator: Course<S>,
-    lengthening_denominator: S,
+pub(crate) struct VelocityCurve<'a, S> {
+    relation: &'a ForceVelocity<S>,
+    /// d of the shortening branch.
+    shortening: Course<S>,
+    /// n of the lengthening branch.
+    lengthening: Course<S>,
 }
 
-impl<S: Scalar> VelocityCurve<S> {
+impl<S: Scalar> VelocityCurve<'_, S> {
     /// FV, its slope and half its curvature by V, `time` ticks after the tick's middle, on the
     /// branch named by `lengthening`, at a velocity of that side. Faster than V_max, FV is 0: the
     /// paper's own expression would push.
+    #[inline(always)]
     pub(crate) fn at(&self, time: S, lengthening: bool, velocity: S) -> (S, S, S) {
         let (numerator, denominator) = if lengthening {
-            (self.lengthening_numerator.at(time), self.lengthening_denominator)
+            (self.lengthening.at(time), self.relation.per_lengthening)
         } else {
-            (self.shortening_numerator, self.shortening_denominator.at(time))
+            (self.relation.per_maximum, self.shortening.at(time))
         };
-        let inside = velocity.max(self.maximum_velocity);
-        let (value, slope, bend) = inside.hyperbola(numerator, denominator);
-        if velocity > self.maximum_velocity {
-            (value, slope, bend)
+        let maximum_velocity = self.relation.maximum_velocity;
+        let inside = velocity.max(maximum_velocity);
+        let reciprocal = inside.of_one_and(denominator);
+        let rise = (numerator - denominator) * reciprocal;
+        let value = S::ONE + rise * inside;
+        if velocity > maximum_velocity {
+            let slope = rise * reciprocal;
+            (value, slope, -(denominator * reciprocal * slope))
         } else {
             (value, S::ZERO, S::ZERO)
         }

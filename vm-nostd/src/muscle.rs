@@ -282,9 +282,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         start: S,
         middle: S,
         travel: S,
-    ) -> Contractile<S, N> {
+    ) -> Contractile<'_, S, N> {
         let (inside, _) = self.domain.filaments.clip(middle);
-        let reciprocal = S::ONE.ratio(inside);
+        let reciprocal = inside.reciprocal();
         let logarithm = inside.ln();
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
@@ -327,7 +327,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {
             gains,
-            curves: self.fibers.map(|fiber| fiber.force_velocity.at(inside, travel)),
+            curves: self.fibers.each_ref().map(|fiber| fiber.force_velocity.at(inside, travel)),
             passive: Course {
                 middle: passive_at_middle
                     + passive_slope * (start - middle).scaled(&self.tick_rate),

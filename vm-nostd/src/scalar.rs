@@ -87,6 +87,10 @@ pub trait Scalar:
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
 
+    /// 1 divided by a positive number; saturated where that is out of range.
+    #[must_use]
+    fn reciprocal(self) -> Self;
+
     /// e to the power of `self`; 0 far below, saturated far above, never an error.
     #[must_use]
     fn exp(self) -> Self;
@@ -97,9 +101,9 @@ pub trait Scalar:
     fn softplus(self) -> (Self, Self);
     /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm, and its slope.
     fn weibull(self) -> (Self, Self);
-    /// Of `(1 + n self)/(1 + d self)`, whose denominator is positive: value, slope, half its
-    /// curvature.
-    fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self);
+    /// `1/(1 + factor self)`, whose denominator is positive.
+    #[must_use]
+    fn of_one_and(self, factor: Self) -> Self;
     /// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's, from a residual `self`,
     /// its positive slope and half its curvature.
     #[must_use]

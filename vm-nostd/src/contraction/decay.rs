@@ -37,8 +37,9 @@ impl<S: Scalar> Decay<S> {
     /// Of a mass over half the substep (`inertia`) and a `damping`, both F0 s/L_ce0: what is left
     /// of the velocity `gained` up to the middle, while the force is `growing` (F0 in half the
     /// substep).
+    #[inline(always)]
     pub(super) fn of(&self, inertia: S, damping: S, gained: S, growing: S) -> Left<S> {
-        let reciprocal = S::ONE.ratio(inertia + damping);
+        let reciprocal = (inertia + damping).reciprocal();
         let s = damping * reciprocal;
         // What was gained beyond the steady velocity's part; both times s.
         let difference = s * gained - growing * reciprocal;

@@ -1,59 +1,25 @@
 //! Fixed point: 32 bits with 24 behind the point, and 64 with 56 for what lags move.
 
-mod kernels;
+#[cfg(test)]
+mod every;
+mod exponential;
+mod factor;
 mod mantissa;
 mod number;
+mod pieces;
+mod quotient;
 
+pub use factor::Factor;
 pub use number::Fixed;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
+use factor::nearest;
 use fixed::types::{I16F16, I23F9};
-use kernels::saturate;
-
-/// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Factor {
-    mantissa: i32,
-    shift: u8,
-}
-
-impl Factor {
-    /// The nearest factor; its mantissa has 31 bits, unless it is below 2^-32.
-    fn new(value: f64) -> Self {
-        const TWO_30: f64 = (1 << 30) as f64;
-        let (mut mantissa, mut shift) = (value * TWO_30 * 2.0, 31);
-        while mantissa.abs() >= 2.0 * TWO_30 && shift > 1 {
-            mantissa *= 0.5;
-            shift -= 1;
-        }
-        while mantissa.abs() < TWO_30 && shift < 62 {
-            mantissa *= 2.0;
-            shift += 1;
-        }
-        Self { mantissa: nearest(mantissa), shift }
-    }
-
-    /// Units times the factor, rounded; saturated.
-    ///
-    /// # Scaling and overflow
-    /// The product of two 32-bit numbers is at most 2^62, half of what is shifted out at most 2^61.
-    fn times(self, units: i32) -> i32 {
-        let exact = i64::from(units) * i64::from(self.mantissa);
-        saturate((exact + (1 << (self.shift - 1))) >> self.shift)
-    }
-}
-
-/// The nearest whole number that fits.
-fn nearest(value: f64) -> i32 {
-    // Adding a half and cutting off rounds what is positive; `as` saturates.
-    (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
-}
+use number::ONE;
 
 /// Units of [`I23F9`] in a metre.
 const PATH_UNITS: f64 = 512e6;
-/// 4.5 in Q8.24: exp(-exp(4.5)) is 1e-39, and a larger power would not fit.
-const SATURATED: i32 = 9 << 23;
 const UNITS: f64 = (1 << 24) as f64;
 const FREQUENCY_UNITS: f64 = (1 << 16) as f64;
 /// Q8.56 has 32 bits more behind the point than Q8.24.
@@ -75,8 +41,8 @@ impl Scalar for Fixed {
     type Force = i32;
 
     const ZERO: Self = Self::from_bits(0);
-    const ONE: Self = Self::from_bits(kernels::ONE);
-    const HALF: Self = Self::from_bits(kernels::ONE / 2);
+    const ONE: Self = Self::from_bits(ONE);
+    const HALF: Self = Self::from_bits(ONE / 2);
     const LEAST: Self = Self::from_bits(1);
     const LARGEST_COEFFICIENT: f64 = 60.0;
     const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
@@ -98,6 +64,7 @@ impl Scalar for Fixed {
     fn is_finite(self) -> bool {
         true
     }
+    #[inline(always)]
     fn is_saturated(self) -> bool {
         // A sum of sums can end a unit below.
         self >= Self::from_bits(i32::MAX - 1)
@@ -110,31 +77,35 @@ impl Scalar for Fixed {
         Self::from_bits(factor.times(self.to_bits()))
     }
     fn ratio(self, divisor: Self) -> Self {
-        Self::from_bits(kernels::ratio(self.to_bits(), divisor.to_bits()))
+        Self::from_bits(quotient::ratio(self.to_bits(), divisor.to_bits()))
+    }
+
+    fn reciprocal(self) -> Self {
+        Self::from_bits(quotient::reciprocal(self.to_bits()))
     }
 
     fn exp(self) -> Self {
-        Self::from_bits(kernels::exp(self.to_bits()))
+        Self::from_bits(exponential::exp(self.to_bits()))
     }
     fn ln(self) -> Self {
-        Self::from_bits(kernels::ln(self.to_bits()))
+        Self::from_bits(mantissa::ln(self.to_bits()))
     }
     fn softplus(self) -> (Self, Self) {
-        let (value, slope) = kernels::softplus(self.to_bits());
+        let (value, slope) = pieces::softplus(self.to_bits());
         (Self::from_bits(value), Self::from_bits(slope))
     }
     fn weibull(self) -> (Self, Self) {
-        let power = Scalar::min(self, Self::from_bits(SATURATED)).exp();
-        let left = (-power).exp();
-        (Self::ONE - left, power * left)
+        let (value, slope) = pieces::weibull(self.to_bits());
+        (Self::from_bits(value), Self::from_bits(slope))
     }
-    fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
-        let (value, slope, bend) = kernels::hyperbola(self.to_bits(), n.to_bits(), d.to_bits());
-        (Self::from_bits(value), Self::from_bits(slope), Self::from_bits(bend))
+    #[inline(always)]
+    fn of_one_and(self, factor: Self) -> Self {
+        Self::from_bits(quotient::of_one_and(factor.to_bits(), self.to_bits()))
     }
+    #[inline(always)]
     fn halley(self, slope: Self, half_curvature: Self) -> Self {
         let [residual, slope, curvature] = [self, slope, half_curvature].map(Self::to_bits);
-        Self::from_bits(kernels::halley(residual, slope, curvature))
+        Self::from_bits(quotient::halley(residual, slope, curvature))
     }
 
     fn slow(self) -> i64 {
@@ -155,7 +126,7 @@ impl Scalar for Fixed {
     }
     fn lags(self) -> [Lags<u32>; 2] {
         let x = self.to_bits().max(0);
-        let left_at_half = kernels::decay(x >> 1);
+        let left_at_half = exponential::decay(x >> 1);
         let left = ((u64::from(left_at_half) * u64::from(left_at_half)) >> 32) as u32;
         // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
         let delayed = |left: u32, shift: u32| ((x as u64 * u64::from(left)) >> shift) as u32;
@@ -218,5 +189,14 @@ impl Scalar for Fixed {
     }
     fn newtons(force: i32) -> f64 {
         f64::from(force) * 1e-3
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn tables_take_3152_bytes() {
+        let kernels = [super::exponential::TABLE_BYTES, super::mantissa::TABLE_BYTES];
+        assert_eq!(kernels.iter().sum::<usize>() + super::pieces::TABLE_BYTES, 3152);
     }
 }

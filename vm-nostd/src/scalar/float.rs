@@ -60,6 +60,10 @@ macro_rules! float {
                 self / divisor
             }
 
+            fn reciprocal(self) -> Self {
+                1.0 / self
+            }
+
             fn exp(self) -> Self {
                 $kernels::exp(self)
             }
@@ -72,11 +76,8 @@ macro_rules! float {
             fn weibull(self) -> (Self, Self) {
                 $kernels::weibull(self)
             }
-            fn hyperbola(self, n: Self, d: Self) -> (Self, Self, Self) {
-                let reciprocal = 1.0 / (1.0 + d * self);
-                let value = (1.0 + n * self) * reciprocal;
-                let slope = (n - d) * (reciprocal * reciprocal);
-                (value, slope, -(d * slope * reciprocal))
+            fn of_one_and(self, factor: Self) -> Self {
+                1.0 / (1.0 + factor * self)
             }
             fn halley(self, slope: Self, half_curvature: Self) -> Self {
                 let square = slope * slope;

@@ -1,33 +1,34 @@
-//! Logarithm and reciprocal of a mantissa: a number 1 <= m < 2 in 32 bits, the first of them set.
+//! Logarithm and reciprocal, by mantissas: numbers 1 <= m < 2 in 32 bits, the first of them set.
 //!
-//! Both start from the same table: c = 1/m at the middle of the 32nd of the range that m is in,
-//! and then go on with r = m c - 1, |r| < 1/64.
+//! Both start from the same table: c = 1/m at the middle of the 64th of the range that m is in,
+//! and then go on with r = m c - 1, |r| < 1/128.
 
+use super::number::high;
 use crate::scalar::series;
 
 /// Bits of the index into the tables.
-const INDEX_BITS: u32 = 5;
+const INDEX_BITS: u32 = 6;
 const ENTRIES: usize = 1 << INDEX_BITS;
 
-/// 1/m at the middle of each 32nd of 1..2, Q0.32.
+/// 1/m at the middle of each 64th of 1..2, Q0.32.
 static RECIPROCALS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = 0;
     while index < ENTRIES {
-        // m = (2 * 32 + 2 index + 1)/64.
-        table[index] = ((64 << 32) / (64 + 2 * index as u64 + 1)) as u32;
+        // m = (2 * 64 + 2 index + 1)/128.
+        table[index] = ((128 << 32) / (128 + 2 * index as u64 + 1)) as u32;
         index += 1;
     }
     table
 };
 
-/// -ln of each of [`RECIPROCALS`], Q0.32.
-static LOGARITHMS: [u32; ENTRIES] = {
+/// -ln of each of [`RECIPROCALS`], Q1.31.
+static LOGARITHMS: [i32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = 0;
     while index < ENTRIES {
         let below_one = RECIPROCALS[index] as f64 / 4_294_967_296.0 - 1.0;
-        table[index] = (4_294_967_296.0 * -series::ln_1p(below_one) + 0.5) as u32;
+        table[index] = (2_147_483_648.0 * -series::ln_1p(below_one) + 0.5) as i32;
         index += 1;
     }
     table
@@ -37,87 +38,74 @@ static LOGARITHMS: [u32; ENTRIES] = {
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 
-/// The high half of a product of signed 32-bit fractions.
-fn high(a: i32, b: i32) -> i32 {
-    ((i64::from(a) * i64::from(b)) >> 32) as i32
-}
-
-/// The table's entry for `m`, and r = m c - 1 in Q0.32.
+/// The table's index for `m`, its entry c, and r = m c - 1 in Q0.32.
 ///
 /// # Scaling and overflow
-/// m is Q1.31 and c Q0.32: their product Q1.63 is 1 within 1/64, so that the difference to 2^63,
-/// shifted to Q0.32, is below 2^26 + 1 in magnitude.
-fn reduced(m: u32) -> (usize, i32) {
+/// m is Q1.31 and c Q0.32: their product Q1.63 is 1 within 1/128. Its 1 is bit 63 and falls out of
+/// the 32 bits from bit 31 on, which leaves r: below 2^25 + 1 in magnitude.
+fn reduced(m: u32) -> (usize, u32, i32) {
     let index = ((m >> (31 - INDEX_BITS)) & (ENTRIES as u32 - 1)) as usize;
-    let product = u64::from(m) * u64::from(RECIPROCALS[index]);
-    (index, (product.wrapping_sub(1 << 63) as i64 >> 31) as i32)
+    let c = RECIPROCALS[index];
+    let product = u64::from(m) * u64::from(c);
+    (index, c, (product >> 31) as u32 as i32)
 }
 
-/// ln m in Q0.32, for m in Q1.31 with its first bit set; within 3 units.
+/// 1/m in Q1.31, 2^30 to 2^31, for m in Q1.31 with its first bit set; within 3 units.
 ///
 /// # Scaling and overflow
-/// r - r²/2 + r³/3 - r⁴/4 is below 2^27 in magnitude, and ln m below 0.6932 × 2^32: sums fit in
-/// 64 bits with room to spare. The series is cut at r⁵/5 < 2^-32.3.
-pub(super) fn ln(m: u32) -> i64 {
-    let (index, r) = reduced(m);
-    // r/4, r/3 and so on are taken of numbers below 2^27: no shift overflows.
-    const THIRD: i32 = 0x5555_5555;
-    let fourth = high(r, r) >> 2;
-    let third = high(r, THIRD) - fourth;
-    let second = (r >> 1) - high(r, third);
-    let sum = i64::from(r) - i64::from(high(r, second));
-    i64::from(LOGARITHMS[index]) + sum
-}
-
-/// 1/m in Q0.32, for m in Q1.31 with its first bit set; within 5 units, and below 2^32.
-///
-/// # Scaling and overflow
-/// c (1 - r)(1 + r²)(1 + r⁴) is c/(1 + r) to 1 - r⁸. Each factor is 1 within 1/64; products are
-/// taken of the parts beyond 1, which are below 2^27 in Q0.32.
+/// c (1 - r + r² - r³ + r⁴) is c/(1 + r) to r⁵ < 2^-35; for r⁴, of at most 2^-28, r² times the
+/// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product with
+/// c/2, in Q0.31, below 2^25.
 pub(super) fn reciprocal(m: u32) -> u32 {
-    let (index, r) = reduced(m);
+    let (_, c, r) = reduced(m);
     let square = high(r, r);
-    let fourth = high(square, square);
-    let mut beyond = -r;
-    beyond += square + high(beyond, square);
-    beyond += fourth + high(beyond, fourth);
-    let c = i64::from(RECIPROCALS[index]);
-    let exact = c + ((c * i64::from(beyond)) >> 32);
-    exact.min(i64::from(u32::MAX)) as u32
+    let beyond = square + (square >> 14) - r - high(r, square);
+    let half = (c >> 1) as i32;
+    half as u32 + high(half, beyond) as u32
+}
+
+/// ln 2 in Q1.31.
+const LN_2: i64 = 1_488_522_236;
+
+/// ln x in Q8.24 of a positive number; within 1 unit. For 0 and below it is that of one unit.
+///
+/// # Scaling and overflow
+/// x is shifted left until its first bit is set; the power of two taken out is -24 to 6. The mantissa's
+/// logarithm c + r - r²/2 + r³/3, to r⁴/4 < 2^-30, is below 0.7 in Q1.31. The sum, below 17, has 36
+/// bits of 64.
+pub(super) fn ln(x: i32) -> i32 {
+    let x = x.max(1) as u32;
+    let zeros = x.leading_zeros();
+    let (index, _, r) = reduced(x << zeros);
+    // 1/3 in Q0.32.
+    const THIRD: i32 = 0x5555_5555;
+    let series = r - high(r, (r >> 1) - high(r, high(r, THIRD)));
+    let mantissa = LOGARITHMS[index] + (series >> 1);
+    let power = 7 - zeros as i32;
+    ((i64::from(power) * LN_2 + i64::from(mantissa + (1 << 6))) >> 7) as i32
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::every::{UNIT, worst};
     use super::*;
 
-    /// Every mantissa near the edges of the table's ranges, and some hundred thousand between.
-    fn mantissas() -> impl Iterator<Item = u32> {
-        let edges = (0..ENTRIES as u32).flat_map(|index| {
-            let edge = 0x8000_0000 + (index << (31 - INDEX_BITS));
-            (0..200)
-                .map(move |step| edge + step)
-                .chain((1..200).map(move |s| edge.wrapping_sub(s) | 0x8000_0000))
+    #[test]
+    fn reciprocals_of_all_mantissas_are_within_three_units_and_at_most_one() {
+        let found = worst(1 << 31, u32::MAX.into(), |m| {
+            let found = reciprocal(m as u32);
+            let error = (f64::from(found) - 2_f64.powi(62) / m as f64).abs();
+            if found <= 1 << 31 { error } else { f64::NAN }
         });
-        edges.chain((0..500_000).map(|step| 0x8000_0000 + step * 4_294))
+        assert!(found <= 3.0, "{found} units");
     }
 
     #[test]
-    fn logarithms_are_within_three_units() {
-        let mut worst = 0.0_f64;
-        for m in mantissas() {
-            let exact = (f64::from(m) / 2_f64.powi(31)).ln() * 2_f64.powi(32);
-            worst = worst.max((ln(m) as f64 - exact).abs());
-        }
-        assert!(worst <= 3.0, "{worst}");
-    }
-
-    #[test]
-    fn reciprocals_are_within_five_units() {
-        let mut worst = 0.0_f64;
-        for m in mantissas() {
-            let exact = 2_f64.powi(63) / f64::from(m);
-            worst = worst.max((f64::from(reciprocal(m)) - exact.min(4_294_967_295.0)).abs());
-        }
-        assert!(worst <= 5.0, "{worst}");
+    fn logarithms_of_all_positive_numbers_are_within_a_unit() {
+        let found = worst(1, i32::MAX.into(), |x| {
+            (f64::from(ln(x as i32)) - (x as f64 / UNIT).ln() * UNIT).abs()
+        });
+        assert!(found <= 1.0, "{found} units");
+        assert_eq!(ln(i32::MIN), ln(1));
     }
 }

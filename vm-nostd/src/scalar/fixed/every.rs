@@ -1,0 +1,59 @@
+//! Every number a kernel can be given, for its tests.
+
+use std::sync::atomic::{AtomicI64, Ordering};
+use std::thread;
+
+pub(super) const UNIT: f64 = (1_u32 << 24) as f64;
+
+/// A built-in check at every operation makes every number too many: then, every so manyth.
+const STEP: usize = if cfg!(debug_assertions) { 1009 } else { 1 };
+
+/// The largest `error` of the numbers from `least` to `most`, both included, on all cores; not a
+/// number if any is.
+pub(super) fn worst(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) -> f64 {
+    const BLOCK: i64 = 1 << 20;
+    let next = AtomicI64::new(least);
+    let work = || {
+        let mut worst = 0.0_f64;
+        loop {
+            let first = next.fetch_add(BLOCK, Ordering::Relaxed);
+            if first > most {
+                return worst;
+            }
+            for number in (first..(first + BLOCK).min(most + 1)).step_by(STEP) {
+                let error = error(number);
+                // Written so that not-a-number stays.
+                worst = if error <= worst { worst } else { error };
+            }
+        }
+    };
+    thread::scope(|scope| {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .map(|worker| worker.join().expect("no panic"))
+            .fold(0.0, |a, b| if b <= a { a } else { b })
+    })
+}
+
+/// The same over the numbers of Q8.24 between two whole ones, where a kernel is not constant or the
+/// identity, and over a spaced choice of all.
+pub(super) fn worst_between(least: i64, most: i64, error: impl Fn(i32) -> f64 + Sync) -> f64 {
+    const SPACE: i64 = 4099;
+    let every = worst(least << 24, most << 24, |number| error(number as i32));
+    let all = i64::from(i32::MIN) / SPACE..=i64::from(i32::MAX) / SPACE;
+    let spaced = worst(*all.start(), *all.end(), |place| error((place * SPACE) as i32));
+    let ends = [i32::MIN, i32::MIN + 1, i32::MAX - 1, i32::MAX].map(error);
+    // Written so that not-a-number stays.
+    ends.into_iter().chain([spaced]).fold(every, |a, b| if b <= a { a } else { b })
+}
+
+/// Numbers of any length, always the same.
+pub(super) fn of_any_length() -> impl Iterator<Item = i32> {
+    let mut state = 1_u64;
+    core::iter::repeat_with(move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 32) as i32 >> (state >> 27 & 31)
+    })
+}

@@ -1,0 +1,104 @@
+//! Exponentials: 32-bit products, shifts and a table of powers of two.
+
+use super::number::{exact, high};
+use crate::scalar::series;
+
+/// log2 e in Q2.30.
+const LOG2_E: i32 = 1_549_082_005;
+const POWER_BITS: u32 = 5;
+const POWERS: usize = 1 << POWER_BITS;
+
+/// 2^((index + 1/2)/32) in Q1.31.
+static POWERS_OF_TWO: [u32; POWERS] = {
+    let mut table = [0; POWERS];
+    let mut index = 0;
+    while index < POWERS {
+        let x = core::f64::consts::LN_2 * (index as f64 + 0.5) / POWERS as f64;
+        table[index] = (series::exp(x) * 2_147_483_648.0 + 0.5) as u32;
+        index += 1;
+    }
+    table
+};
+
+/// What the table takes.
+#[cfg(test)]
+pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
+
+/// e^x as a mantissa in Q1.31 and a power of two.
+///
+/// # Scaling and overflow
+/// x log2 e is below 185 and held in Q10.54. Of its fraction, five bits choose the table's entry
+/// and the rest, less half a step, is y = (..) ln 2, |y| < 2^-6.5: the series y + y²/2 + y³/6,
+/// to y⁴/24 < 2^-30, is below 2^26 in Q0.32 and its product with half the entry below 2^25. The
+/// mantissa, from 1 to 2, may come out as 1 less a rounding.
+fn parts(x: i32) -> (u32, i32) {
+    let (twos, low) = exact(x, LOG2_E);
+    let fraction = ((twos as u32) << 10) | (low >> 22);
+    let index = (fraction >> (32 - POWER_BITS)) as usize;
+    let rest = fraction << POWER_BITS >> POWER_BITS;
+    // ln 2 in Q0.31, and twice that is what the high word is short of.
+    const LN_2: i32 = 1_488_522_236;
+    let y = high((rest as i32 - (1 << (31 - POWER_BITS))) << 1, LN_2);
+    // 1/6 in Q0.32.
+    const SIXTH: i32 = 0x2aaa_aaab;
+    let square = high(y, y);
+    let beyond = y + (square >> 1) + high(square, high(y, SIXTH));
+    let entry = POWERS_OF_TWO[index];
+    let more = high((entry >> 1) as i32, beyond) << 1;
+    (entry.wrapping_add(more as u32), twos >> 22)
+}
+
+/// A mantissa shifted right, rounded; 0 beyond 32 bits.
+fn shifted(mantissa: u32, shift: u32) -> u32 {
+    if shift <= 32 { ((mantissa >> (shift - 1)) + 1) >> 1 } else { 0 }
+}
+
+/// e^x in Q8.24, saturated; within 1 unit where it is below 1, and within 2^-28 of its value above.
+///
+/// # Scaling and overflow
+/// Exponents run from -185 to 184. A mantissa in Q1.31 becomes Q8.24 by a shift of 7 to the right,
+/// less the exponent: of 0 bits at an exponent of 7 and more, where it saturates, and of more
+/// than 32 below -25, where nothing is left.
+pub(super) fn exp(x: i32) -> i32 {
+    let (mantissa, exponent) = parts(x);
+    if exponent >= 7 { i32::MAX } else { shifted(mantissa, (7 - exponent) as u32) as i32 }
+}
+
+/// e^-x in Q0.32 for x >= 0, below 1 by at least a unit; within 8 units.
+///
+/// # Scaling and overflow
+/// The exponent of a number below 1 is negative: the shift of the Q1.31 mantissa is 0 or to the
+/// right. For x = 0 it would be 2^32 and is a unit less.
+pub(super) fn decay(x: i32) -> u32 {
+    let (mantissa, exponent) = parts(-x.max(0));
+    match -1 - exponent {
+        ..=-1 => u32::MAX,
+        0 => mantissa,
+        shift => shifted(mantissa, shift as u32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::every::{UNIT, worst_between};
+    use super::*;
+
+    #[test]
+    fn exponentials_of_all_numbers_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+        let found = worst_between(-18, 5, |x| {
+            let exact = (f64::from(x) / UNIT).exp() * UNIT;
+            let saturated = exact.min(f64::from(i32::MAX));
+            (f64::from(exp(x)) - saturated).abs() / (1.0 + saturated * 2_f64.powi(-28))
+        });
+        assert!(found <= 1.0, "{found} of the bound");
+    }
+
+    #[test]
+    fn all_decays_are_within_8_units_of_2_to_the_minus_32() {
+        let found = worst_between(0, 23, |x| {
+            let exact = (-f64::from(x.max(0)) / UNIT).exp() * 4_294_967_296.0;
+            (f64::from(decay(x)) - exact).abs()
+        });
+        assert!(found <= 8.0, "{found} units");
+    }
+}

@@ -1,0 +1,72 @@
+//! Constants of any magnitude.
+
+use super::number::{exact, whole};
+
+/// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factor {
+    mantissa: i32,
+    /// 1 to 62.
+    shift: u8,
+}
+
+impl Factor {
+    /// The nearest factor; its mantissa has 31 bits, unless it is below 2^-32.
+    pub(super) fn new(value: f64) -> Self {
+        const TWO_30: f64 = (1 << 30) as f64;
+        let (mut mantissa, mut shift) = (value * TWO_30 * 2.0, 31);
+        while mantissa.abs() >= 2.0 * TWO_30 && shift > 1 {
+            mantissa *= 0.5;
+            shift -= 1;
+        }
+        while mantissa.abs() < TWO_30 && shift < 62 {
+            mantissa *= 2.0;
+            shift += 1;
+        }
+        Self { mantissa: nearest(mantissa), shift }
+    }
+
+    /// Units times the factor, rounded; saturated. Lengths and their changes go through this: cut off
+    /// tick by tick, fascicles would creep.
+    ///
+    /// # Scaling and overflow
+    /// Of a factor below 1/2, all of the product's low word is shifted out, and its high word, at
+    /// most 2^30, can take half a unit more.
+    pub(super) fn times(self, units: i32) -> i32 {
+        let product = exact(units, self.mantissa);
+        match u32::from(self.shift) {
+            shift @ 33.. => ((product.0 >> (shift - 33)) + 1) >> 1,
+            shift => whole(product, shift).saturating_add((product.1 >> (shift - 1) & 1) as i32),
+        }
+    }
+}
+
+/// The nearest whole number that fits.
+pub(super) fn nearest(value: f64) -> i32 {
+    // Adding a half and cutting off rounds what is positive; `as` saturates.
+    (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_of_any_magnitude_scale_to_the_nearest_unit() {
+        for exponent in -40..=29 {
+            for mantissa in [1.0, -1.0, 1.234_567_890_123, -1.999_999_999_999] {
+                let value = mantissa * 2_f64.powi(exponent);
+                let factor = Factor::new(value);
+                for units in [0, 1, -1, 12_345, -7_654_321, 1 << 24, i32::MAX, i32::MIN] {
+                    let exact = f64::from(units) * value;
+                    let expected = exact.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+                    let error = (f64::from(factor.times(units)) - expected).abs();
+                    // Half a unit of the mantissa, which has 31 bits down to 2^-32.
+                    let relative = 2_f64.powi(-31).max(2_f64.powi(-63 - exponent));
+                    let bound = 0.51 + expected.abs() * relative;
+                    assert!(error <= bound, "{units} x {value:e}: {error} > {bound}");
+                }
+            }
+        }
+    }
+}

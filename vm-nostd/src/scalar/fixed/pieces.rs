@@ -1,0 +1,132 @@
+//! Softplus and Weibull's distribution, as cubics between nodes made when the crate is compiled.
+
+use super::number::high;
+use crate::scalar::series;
+
+/// Nodes per unit of the argument, as a power of two.
+const NODE_BITS: u32 = 3;
+/// Bits of a Q8.24 number within a piece.
+const PLACE_BITS: u32 = 24 - NODE_BITS;
+
+/// A function's value, 0 to 1, and its slope times the length of a piece, both in Q2.30.
+type Node = (i32, i32);
+
+const fn node(value: f64, slope: f64) -> Node {
+    const UNITS: f64 = 1_073_741_824.0;
+    ((value * UNITS + 0.5) as i32, (slope * UNITS / (1 << NODE_BITS) as f64 + 0.5) as i32)
+}
+
+/// The cubic through a node and the next, with their slopes, at a `place` counted from the first
+/// node in Q8.24; value and slope by pieces, in Q2.30. None beyond the last node.
+///
+/// # Scaling and overflow
+/// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
+/// differences of values, and all coefficients below 2^29. The place within a piece is a share
+/// in Q0.31, the product with it Q3.29 before it is doubled.
+fn between(nodes: &[Node], place: u32) -> Option<(i32, i32)> {
+    let index = (place >> PLACE_BITS) as usize;
+    let [(start, first), (end, last)] = *nodes.get(index..)?.first_chunk()?;
+    let share = ((place << (32 - PLACE_BITS)) >> 1) as i32;
+    let times = |coefficient: i32| high(share, coefficient) << 1;
+    let rise = end - start;
+    let cubic = first + last - 2 * rise;
+    let square = rise - first - cubic;
+    let bent = times(cubic);
+    let value = start + times(first + times(square + bent));
+    let slope = first + times(2 * square + 3 * bent);
+    Some((value, slope))
+}
+
+/// A value, and a slope by pieces, in Q2.30 as a value and a slope by units in Q8.24; rounded.
+fn in_units((value, slope): (i32, i32)) -> (i32, i32) {
+    let rounded = |value: i32, bits: u32| (value + (1 << (bits - 1))) >> bits;
+    (rounded(value, 6), rounded(slope, 6 - NODE_BITS))
+}
+
+/// Beyond this distance from 0, the tail of softplus is below half a unit of 2^-24.
+const LONGEST_TAIL: usize = 18;
+const SOFTPLUS_NODES: usize = (LONGEST_TAIL << NODE_BITS) + 1;
+
+/// ln(1 + e^-x), and the slope's magnitude.
+static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
+    let mut table = [(0, 0); SOFTPLUS_NODES];
+    let mut index = 0;
+    while index < SOFTPLUS_NODES {
+        let power = series::exp(-(index as f64) / (1 << NODE_BITS) as f64);
+        let (value, slope) = node(series::ln_1p(power), power / (1.0 + power));
+        table[index] = (value, -slope);
+        index += 1;
+    }
+    table
+};
+
+/// ln(e^x + 1), saturated, within 3 units, and the logistic function of x, within 3e-6.
+pub(super) fn softplus(x: i32) -> (i32, i32) {
+    let (tail, slope) = between(&SOFTPLUS, x.unsigned_abs()).map_or((0, 0), in_units);
+    if x > 0 { (x.saturating_add(tail), super::number::ONE + slope) } else { (tail, -slope) }
+}
+
+const WEIBULL_LEAST: i32 = -18;
+const WEIBULL_MOST: i32 = 3;
+const WEIBULL_NODES: usize = (((WEIBULL_MOST - WEIBULL_LEAST) as usize) << NODE_BITS) + 1;
+
+static WEIBULL: [Node; WEIBULL_NODES] = {
+    let mut table = [(0, 0); WEIBULL_NODES];
+    let mut index = 0;
+    while index < WEIBULL_NODES {
+        let x = WEIBULL_LEAST as f64 + index as f64 / (1 << NODE_BITS) as f64;
+        let power = series::exp(x);
+        table[index] = node(series::one_minus_exp(power), power * series::exp(-power));
+        index += 1;
+    }
+    table
+};
+
+/// 1 - e^-e^x, within 16 units, and its slope, within 2e-5.
+///
+/// # Scaling and overflow
+/// Below the first node and beyond the last it is 0 and 1 to 3e-8. The place from the first
+/// node on is x and 18: saturated, it is beyond the last node.
+pub(super) fn weibull(x: i32) -> (i32, i32) {
+    let place = x.saturating_sub(WEIBULL_LEAST << 24);
+    if place < 0 {
+        return (0, 0);
+    }
+    between(&WEIBULL, place as u32).map_or((super::number::ONE, 0), in_units)
+}
+
+/// What the two tables take.
+#[cfg(test)]
+pub(super) const TABLE_BYTES: usize = (SOFTPLUS_NODES + WEIBULL_NODES) * size_of::<Node>();
+
+#[cfg(test)]
+mod tests {
+    use super::super::every::{UNIT, worst_between};
+    use super::*;
+
+    #[test]
+    fn softplus_of_all_numbers_is_within_3_units_and_its_slope_within_3e6th() {
+        let found = worst_between(-18, 18, |x| {
+            let exact = f64::from(x) / UNIT;
+            let power = (-exact.abs()).exp();
+            let expected = ((exact.max(0.0) + power.ln_1p()) * UNIT).min(f64::from(i32::MAX));
+            let logistic = if x > 0 { 1.0 } else { power } / (1.0 + power);
+            let (value, slope) = softplus(x);
+            let steepness = (f64::from(slope) / UNIT - logistic).abs();
+            ((f64::from(value) - expected).abs() / 3.0).max(steepness / 3e-6)
+        });
+        assert!(found <= 1.0, "{found} of the bounds");
+    }
+
+    #[test]
+    fn weibulls_distribution_of_all_numbers_is_within_16_units_and_its_slope_within_2e5th() {
+        let found = worst_between(-18, 3, |x| {
+            let power = (f64::from(x) / UNIT).min(100.0).exp();
+            let left = (-power).exp();
+            let (value, slope) = weibull(x);
+            let distance = (f64::from(value) + (-power).exp_m1() * UNIT).abs();
+            (distance / 16.0).max((f64::from(slope) / UNIT - power * left).abs() / 2e-5)
+        });
+        assert!(found <= 1.0, "{found} of the bounds");
+    }
+}

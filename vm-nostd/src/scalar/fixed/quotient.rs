@@ -1,0 +1,160 @@
+//! Quotients: products with a reciprocal; there is no division.
+
+use super::mantissa;
+use super::number::exact;
+
+/// `numerator/denominator` in Q8.24, saturated, for numbers in one format and a positive
+/// denominator; within 2^-28 of its value and 1 unit. A denominator below a unit counts as one.
+///
+/// # Scaling and overflow
+/// Both are shifted left until their first bit is set, n and d in Q1.31. The reciprocal of d is at
+/// most 2^31 in Q1.31, and the high word of its product with n below 2^31; doubled, it is the
+/// quotient's mantissa. What is left is a shift by 7 and the difference of the two shifts.
+pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
+    let (n, d) = (numerator.unsigned_abs(), denominator.max(1) as u32);
+    let (zeros, denominator_zeros) = ((n | 1).leading_zeros(), d.leading_zeros());
+    let reciprocal = mantissa::reciprocal(d << denominator_zeros);
+    let product = ((u64::from(n << zeros) * u64::from(reciprocal)) >> 32) as u32;
+    let magnitude = match 6 + zeros as i32 - denominator_zeros as i32 {
+        ..=-2 => u32::MAX,
+        -1 => product << 1,
+        0 => product,
+        shift @ 1..=32 => ((product >> (shift - 1)) + 1) >> 1,
+        _ => 0,
+    };
+    let magnitude = magnitude.min(i32::MAX as u32) as i32;
+    if numerator < 0 { -magnitude } else { magnitude }
+}
+
+/// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and below it
+/// is that of one unit.
+///
+/// # Scaling and overflow
+/// x, shifted left by z bits until its first bit is set, is a mantissa; its reciprocal in Q1.31, shifted
+/// right by 14 - z bits, is Q8.24. At z = 14, x is 2^-7 at least and 1/x 2^7 at most; beyond, it
+/// saturates.
+pub(super) fn reciprocal(x: i32) -> i32 {
+    let x = x.max(1) as u32;
+    let zeros = x.leading_zeros();
+    scaled_back(mantissa::reciprocal(x << zeros), 14 - zeros as i32)
+}
+
+/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right, rounded; saturated where the shift
+/// is to the left.
+fn scaled_back(reciprocal: u32, shift: i32) -> i32 {
+    match shift {
+        ..0 => i32::MAX,
+        0 => reciprocal.min(i32::MAX as u32) as i32,
+        _ => (((reciprocal >> (shift - 1)) + 1) >> 1) as i32,
+    }
+}
+
+/// Two words as one, shifted left by at most 31 bits.
+fn word((high, low): (i32, u32), left: u32) -> i32 {
+    (high << left) | (low >> 1 >> (31 - left)) as i32
+}
+
+/// 1/(1 + d v) in Q8.24; 1 + d v below 2^-7 counts as that.
+///
+/// # Scaling and overflow
+/// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.
+/// Shifted left by z bits, 1 to 22, it is a mantissa; its reciprocal in Q1.31, shifted right by
+/// 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is a unit less.
+pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
+    const ONE: i32 = 1 << 16;
+    let (high, low) = exact(d, v);
+    let sum = ((high + ONE).max(ONE >> 7), low);
+    let zeros = sum.0.leading_zeros();
+    let reciprocal = mantissa::reciprocal(word(sum, zeros) as u32);
+    scaled_back(reciprocal, 22 - zeros as i32)
+}
+
+/// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's; saturated.
+///
+/// # Scaling and overflow
+/// All products are Q16.48 and at most 2^62. Numerator and denominator are shifted left together
+/// until one of them has only its sign before the first bit, and cut to 32 bits.
+pub(super) fn halley(residual: i32, slope: i32, half_curvature: i32) -> i32 {
+    let slope = i64::from(slope.max(1));
+    let (square, bend) = (slope * slope, i64::from(residual) * i64::from(half_curvature));
+    let numerator = i64::from(residual) * slope;
+    let denominator = (square - bend).max(square >> 1);
+    let words = |wide: i64| ((wide >> 32) as i32, wide as u32);
+    let (numerator, denominator) = (words(numerator), words(denominator));
+    let sign = numerator.0 >> 31;
+    let zeros = ((numerator.0 ^ sign) | denominator.0).leading_zeros();
+    let left = zeros.saturating_sub(1);
+    ratio(word(numerator, left), word(denominator, left))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::every::{UNIT, of_any_length};
+    use super::*;
+
+    /// How far a number is from one that saturates, as a share of 1 unit and 2^-28 of it.
+    fn of_the_bound(found: i32, exact: f64) -> f64 {
+        let saturated = (exact * UNIT).clamp(f64::from(-i32::MAX), f64::from(i32::MAX));
+        (f64::from(found) - saturated).abs() / (1.0 + saturated.abs() * 2_f64.powi(-28))
+    }
+
+    #[test]
+    fn reciprocals_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+        for x in (-10..1_000_000).chain(of_any_length().take(1_000_000)) {
+            let found = of_the_bound(reciprocal(x), UNIT / f64::from(x.max(1)));
+            assert!(found <= 1.0, "1/{x}: {found} of the bound");
+        }
+    }
+
+    #[test]
+    fn ratios_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+        let edges = [0, 1, -1, 7, 1 << 24, i32::MAX, i32::MIN, i32::MAX - 1, 1 << 30, 1 << 17];
+        let numbers = || edges.into_iter().chain(of_any_length());
+        for n in numbers().take(2_000) {
+            for d in numbers().skip(1).take(2_000).filter(|d| *d > 0) {
+                let found = of_the_bound(ratio(n, d), f64::from(n) / f64::from(d));
+                assert!(found <= 1.0, "{n}/{d}: {found} of the bound");
+            }
+        }
+        assert_eq!(ratio(7, 0), 7 << 24);
+    }
+
+    #[test]
+    fn reciprocals_of_one_and_a_product_are_within_2_to_the_minus_24_and_of_their_value() {
+        let numbers = || [0, 1, -1, i32::MAX, i32::MIN].into_iter().chain(of_any_length());
+        for d in numbers().take(2_000) {
+            for v in numbers().take(2_000) {
+                let sum = 1.0 + f64::from(d) / UNIT * (f64::from(v) / UNIT);
+                let exact = 1.0 / sum.max(2_f64.powi(-7));
+                let found = f64::from(of_one_and(d, v)) / UNIT;
+                // The least sum is told from its high word: by 2^-16 at most.
+                let least =
+                    if sum < 2_f64.powi(-7) { exact * exact * 2_f64.powi(-16) } else { 0.0 };
+                let bound = 2_f64.powi(-24) * (1.0 + exact / 16.0) + least;
+                assert!((found - exact).abs() <= bound, "{d} {v}: {found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn corrections_are_halleys_and_at_most_twice_newtons() {
+        let q = |x: f64| (x * UNIT).round() as i32;
+        for slope in [0.02, 0.3, 0.5, 2.0, 40.0] {
+            for curvature in [-40.0, -2.0, 0.0, 0.1, 5.0] {
+                for step in -1000..=1000 {
+                    let residual = f64::from(step) * 0.12;
+                    let newton = residual / slope;
+                    let reduced = slope * slope - residual * curvature;
+                    let exact = residual * slope / reduced.max(0.5 * slope * slope);
+                    let found = f64::from(halley(q(residual), q(slope), q(curvature))) / UNIT;
+                    let expected = exact.clamp(-128.0, 128.0);
+                    // The slope's own rounding is 3e-8, and counts twice; the curvature's counts
+                    // where what it reduces is small.
+                    let bound = 1e-6 + expected.abs() * (1e-6 + 1.2e-7 / slope);
+                    assert!((found - expected).abs() <= bound, "{residual} {slope} {curvature}");
+                    assert!(found.abs() <= 2.0 * newton.abs() * (1.0 + 1e-5) + 1e-6);
+                }
+            }
+        }
+    }
+}
