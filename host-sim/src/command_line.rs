@@ -282,16 +282,21 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
 }
 
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
-    let table = readme::measured(&verify::verify()?);
-    if args.write {
-        readme::MEASURED.write(&table)?;
-        return Ok(true);
+    let report = verify::verify()?;
+    let tables = [
+        (readme::MEASURED, readme::measured(&report)),
+        (readme::ERROR_BUDGET, readme::error_budget(&report)),
+    ];
+    let mut all_current = true;
+    for (place, table) in tables {
+        if args.write {
+            place.write(&table)?;
+        } else if !place.is_current(&table)? {
+            complain("a README's table is not what is measured: cargo vm readme --write");
+            all_current = false;
+        }
     }
-    let current = readme::MEASURED.is_current(&table)?;
-    if !current {
-        complain("the README's table is not what is measured: cargo vm readme --write");
-    }
-    Ok(current)
+    Ok(all_current)
 }
 
 fn input_series(trace: &InputTrace) -> [Series; 3] {

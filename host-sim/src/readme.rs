@@ -1,4 +1,4 @@
-//! The measured tables in the README: made here, and compared with what is written there.
+//! The measured tables in the READMEs: made here, and compared with what is written there.
 
 use crate::cycles;
 use crate::scenario::paper_muscle;
@@ -6,19 +6,32 @@ use crate::trace::{TraceError, write_atomically};
 use crate::verify::{Report, Row};
 use std::path::{Path, PathBuf};
 
-/// A place in the README that a measured table stands in, between two lines.
+/// A place in a README that a measured table stands in, between two lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
+    file: &'static str,
     begin: &'static str,
     end: &'static str,
 }
 
 /// Where the table of accuracy stands.
-pub const MEASURED: Place =
-    Place { begin: "<!-- measured: cargo vm readme --write -->", end: "<!-- end of measured -->" };
+pub const MEASURED: Place = Place {
+    file: "README.md",
+    begin: "<!-- measured: cargo vm readme --write -->",
+    end: "<!-- end of measured -->",
+};
+/// Where the error budget stands.
+pub const ERROR_BUDGET: Place = Place {
+    file: "vm-nostd/README.md",
+    begin: "<!-- error budget: cargo vm readme --write -->",
+    end: "<!-- end of error budget -->",
+};
 /// Where the table of costs stands.
-pub const CYCLES: Place =
-    Place { begin: "<!-- cycles: cargo vm cycles --write -->", end: "<!-- end of cycles -->" };
+pub const CYCLES: Place = Place {
+    file: "README.md",
+    begin: "<!-- cycles: cargo vm cycles --write -->",
+    end: "<!-- end of cycles -->",
+};
 
 /// Why the README could not be compared or written.
 #[derive(Debug, thiserror::Error)]
@@ -35,7 +48,7 @@ pub enum ReadmeError {
     #[error(transparent)]
     Write(#[from] TraceError),
     /// It has no place for the table.
-    #[error("the README has no lines \"{}\" and \"{}\"", .0.begin, .0.end)]
+    #[error("{} has no lines \"{}\" and \"{}\"", .0.file, .0.begin, .0.end)]
     NoPlace(Place),
 }
 
@@ -78,6 +91,29 @@ pub fn measured(report: &Report) -> String {
     text
 }
 
+/// The table: what of the error is the scheme's, and what rounding and kernels add, at 1 ms.
+pub fn error_budget(report: &Report) -> String {
+    let mut text = String::from(
+        "| scenario | mode | scheme | f32 adds | f32 measured | fixed adds | fixed measured |\n\
+         |---|---|---:|---:|---:|---:|---:|\n",
+    );
+    let at_1_ms = |row: &&Row| row.arithmetic == "f64" && !row.scenario.contains('@');
+    for scheme in report.rows.iter().filter(at_1_ms) {
+        text.push_str(&format!(
+            "| {} | {} | {:.4} |",
+            scheme.scenario, scheme.mode, scheme.max_pct_f0
+        ));
+        let same = |row: &&Row| row.scenario == scheme.scenario && row.mode == scheme.mode;
+        for row in report.rows.iter().filter(same) {
+            if let Some(adds) = row.arithmetic_pct_f0 {
+                text.push_str(&format!(" {adds:.4} | {:.4} |", row.max_pct_f0));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
 /// The table: what a tick costs, beside the baselines.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
@@ -105,31 +141,31 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
 impl Place {
     /// Whether a table is the one that stands in the README.
     pub fn is_current(self, table: &str) -> Result<bool, ReadmeError> {
-        let text = read()?;
+        let text = self.read()?;
         Ok(self.filled(&text, table)? == text)
     }
 
     /// Writes a table into the README.
     pub fn write(self, table: &str) -> Result<(), ReadmeError> {
-        let text = self.filled(&read()?, table)?;
-        write_atomically(&path(), text.as_bytes())?;
+        let text = self.filled(&self.read()?, table)?;
+        write_atomically(&self.path(), text.as_bytes())?;
         Ok(())
+    }
+
+    fn path(self) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(self.file)
+    }
+
+    fn read(self) -> Result<String, ReadmeError> {
+        let path = self.path();
+        std::fs::read_to_string(&path).map_err(|source| ReadmeError::Read { path, source })
     }
 
     /// A README's text with a table in this place.
     fn filled(self, text: &str, table: &str) -> Result<String, ReadmeError> {
-        let Place { begin, end } = self;
+        let Place { begin, end, .. } = self;
         let (before, rest) = text.split_once(begin).ok_or(ReadmeError::NoPlace(self))?;
         let (_, after) = rest.split_once(end).ok_or(ReadmeError::NoPlace(self))?;
         Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
     }
-}
-
-fn path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")
-}
-
-fn read() -> Result<String, ReadmeError> {
-    let path = path();
-    std::fs::read_to_string(&path).map_err(|source| ReadmeError::Read { path, source })
 }

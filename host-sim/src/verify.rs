@@ -33,6 +33,8 @@ pub struct Row {
     pub rms_pct_f0: f64,
     /// Mean error, % of F0.
     pub bias_pct_f0: f64,
+    /// Largest difference from the same scheme in `f64`, % of F0: what rounding and kernels add.
+    pub arithmetic_pct_f0: Option<f64>,
     /// What the largest error may be, % of F0.
     pub tolerance_pct_f0: f64,
     /// Whether the row is as it should be.
@@ -116,11 +118,16 @@ fn compare(
         let error = ForceError::between(&reference[settled..], &vector[settled..], f0);
         rows.push(judge(Arithmetic::Reference, "vector", error, Default::default()));
     }
-    for arithmetic in [Arithmetic::F32, Arithmetic::Fixed, Arithmetic::F64] {
+    let (scheme, scheme_flags) = run(Arithmetic::F64)?;
+    for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
         let (computed, flags) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
-        rows.push(judge(arithmetic, "reference", error, (flags, scenario.flags)));
+        let row = judge(arithmetic, "reference", error, (flags, scenario.flags));
+        let arithmetic_pct_f0 = Some(ForceError::between(&computed, &scheme, f0).max);
+        rows.push(Row { arithmetic_pct_f0, ..row });
     }
+    let error = ForceError::between(&scheme, &reference, f0);
+    rows.push(judge(Arithmetic::F64, "reference", error, (scheme_flags, scenario.flags)));
     Ok(rows)
 }
 
@@ -176,6 +183,7 @@ fn judge(
         max_pct_f0: error.max,
         rms_pct_f0: error.rms,
         bias_pct_f0: error.bias,
+        arithmetic_pct_f0: None,
         tolerance_pct_f0: entry.map_or(0.0, |entry| entry.max),
         pass: problems.is_empty(),
         problem: problems.join("; "),

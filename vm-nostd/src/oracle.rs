@@ -1,12 +1,14 @@
 //! Tests of every element against the paper's own formula, in `f64`, and of every slope against
 //! a difference quotient.
 
+use crate::ContinuousMuscle;
 use crate::activation::ActivationFrequency;
 use crate::excitation::Excitation;
 use crate::force_length::ForceLength;
 use crate::force_velocity::ForceVelocity;
 use crate::lag::Lag;
-use crate::params::FiberType;
+use crate::muscle::Input;
+use crate::params::{FiberParams, FiberType, MuscleParams};
 use crate::passive::{Compression, Parallel};
 use crate::presets::{feline_vm4, human_vm4, paper_table_1};
 use crate::sag::share_above;
@@ -38,6 +40,17 @@ fn q(value: f64) -> Fixed {
     Fixed::from_f64(value)
 }
 
+/// Largest error of each relation that force is made of, for force in F0 at full activation, in `f32`,
+/// in fixed point and in `f64`.
+const BOUNDS: [(&str, [f64; 3]); 6] = [
+    ("F_se", [3e-7, 6.6e-8, 6.7e-16]),
+    ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
+    ("F_pe2", [7.4e-7, 4e-7, 3.3e-15]),
+    ("FL", [1.9e-6, 1.2e-6, 8.8e-16]),
+    ("FV", [1e-6, 3.4e-6, 3.1e-15]),
+    ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
+];
+
 /// A tick, which slopes by length are given per.
 const TICK: f64 = 1e-3;
 
@@ -57,6 +70,13 @@ impl Worst {
         self.f32 = self.f32.max((f64::from(f32) - expected).abs() / scale);
         self.fixed = self.fixed.max((Scalar::to_f64(fixed) - expected).abs() / scale);
         self.f64 = self.f64.max((f64 - expected).abs() / scale);
+    }
+
+    /// Holds what was seen to the entry of [`BOUNDS`].
+    fn assert_bound(&self, relation: &str) {
+        let (_, [f32, fixed, f64]) =
+            BOUNDS.into_iter().find(|(name, _)| *name == relation).expect("a relation");
+        self.assert(f32, fixed, f64, relation);
     }
 
     fn assert(&self, f32: f64, fixed: f64, f64: f64, what: &str) {
@@ -108,7 +128,7 @@ fn the_tendon_pulls_as_the_paper_says() {
             paper(at),
         );
     }
-    force.assert(3e-7, 6.6e-8, 6.7e-16, "F_se");
+    force.assert_bound("F_se");
     // From path and fascicle length to extension and back, and the slope by fascicle length.
     for length in spaced(0.7, 1.4, 101) {
         let path = length * fascicle + 0.99 * tendon;
@@ -145,8 +165,8 @@ fn the_passive_elements_are_the_papers() {
         let kink = (l - c.onset_length).abs() < 2e-6;
         assert!(kink || (c64.at(l).1 / TICK - slope(|l| c64.at(l).0, l)).abs() < 1e-5);
     }
-    pe1.assert(2.6e-6, 5.3e-7, 3.9e-15, "F_pe1");
-    pe2.assert(7.4e-7, 4e-7, 3.3e-15, "F_pe2");
+    pe1.assert_bound("F_pe1");
+    pe2.assert_bound("F_pe2");
 }
 
 #[test]
@@ -172,7 +192,7 @@ fn force_length_is_the_papers() {
         let (at_optimum, _) = f32.at(0.0, 1.0);
         assert!((at_optimum - 1.0).abs() < 2e-7);
     }
-    value.assert(1.9e-6, 1.2e-6, 8.8e-16, "FL");
+    value.assert_bound("FL");
 }
 
 #[test]
@@ -220,7 +240,7 @@ fn force_velocity_is_the_papers_on_both_branches() {
         let (beyond, steepness, _) = f64.at(1.0, 0.0).at(0.0, false, p.maximum_velocity - 3.0);
         assert!(beyond.abs() < 1e-15 && steepness == 0.0, "{beyond:e}");
     }
-    value.assert(1e-6, 3.4e-6, 3.1e-15, "FV");
+    value.assert_bound("FV");
 }
 
 #[test]
@@ -252,7 +272,7 @@ fn activation_by_frequency_is_the_papers() {
             }
         }
     }
-    value.assert(1.9e-6, 1.2e-6, 2.3e-15, "Af");
+    value.assert_bound("Af");
 }
 
 /// Euler's method at steps so short that it can serve as an oracle.
@@ -322,4 +342,58 @@ fn the_share_of_a_tick_above_a_level_is_found_by_where_it_is_crossed() {
     assert_eq!(share_above(0.1, 0.2, 0.1), 1.0);
     assert!((share_above(0.0, 0.4, 0.1) - 0.75_f64).abs() < 1e-15);
     assert!((share_above(0.4, 0.0, 0.1) - 0.75_f64).abs() < 1e-15);
+}
+
+#[test]
+fn the_readme_has_the_bounds_of_the_relations_and_their_sum() {
+    let readme = include_str!("../README.md");
+    let mut rows = String::new();
+    let mut sums = [0.0; 2];
+    for (relation, [f32, fixed, _]) in BOUNDS {
+        rows += &format!("| {relation} | {f32:e} | {fixed:e} |\n");
+        sums = [sums[0] + f32, sums[1] + fixed];
+    }
+    rows += &format!("| sum | {:.1e} | {:.1e} |\n", sums[0], sums[1]);
+    assert!(readme.contains(&rows), "vm-nostd/README.md should have\n{rows}");
+}
+
+#[test]
+fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
+    fn held<S: Scalar>(activation: f64, path: f64) -> f64 {
+        let fibers = [(0.6, paper_table_1::SLOW), (0.4, paper_table_1::FAST)]
+            .map(|(fraction, fiber_type)| FiberParams { fraction, fiber_type });
+        let params = MuscleParams {
+            mass: 97.5e-3,
+            fascicle_length: 0.11,
+            tendon_length: 0.02,
+            max_path_length: 0.184,
+            recruitment_saturation: 0.8,
+            elements: paper_table_1::ELEMENTS,
+            fibers,
+        };
+        let muscle = ContinuousMuscle::<S, 2>::build(&params, TimeStep::MILLISECOND).unwrap();
+        let path = S::path_length(path);
+        let mut state = muscle.rest(path).unwrap();
+        let input = Input {
+            activation: S::from_f64(activation),
+            path_length: path,
+            stimulation_frequency: S::frequency(0.0),
+        };
+        let force = (0..3000).map(|_| muscle.step(&mut state, input).force).last();
+        S::newtons(force.unwrap()) / S::newtons(muscle.max_isometric_force())
+    }
+    let sum = |column: usize| BOUNDS.iter().map(|(_, bounds)| bounds[column]).sum::<f64>();
+    let (mut f32, mut fixed) = (0.0_f64, 0.0_f64);
+    for activation in spaced(0.0, 1.0, 10).into_iter().map(shared) {
+        for path in [0.14, 0.16, 0.18].map(|path| f64::from(path as f32)) {
+            let exact = held::<f64>(activation, path);
+            f32 = f32.max((held::<f32>(activation, path) - exact).abs());
+            fixed = fixed.max((held::<Fixed>(activation, path) - exact).abs());
+        }
+    }
+    assert!(f32 <= sum(0), "f32: {f32:e} > {:e}", sum(0));
+    // A velocity that moves the tendon's extension by less than half a unit a tick moves nothing: 3e-5
+    // L_ce0/s, on which FV rises by more than its own bound.
+    const UNRESOLVED: f64 = 3e-5;
+    assert!(fixed <= sum(1) + UNRESOLVED, "fixed: {fixed:e} > {:e}", sum(1));
 }
