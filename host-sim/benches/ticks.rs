@@ -25,7 +25,7 @@ fn input<S: vm::Scalar>(tick: u32) -> vm::Input<S> {
     }
 }
 
-fn built<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES>>()
+fn built<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES, Units = ()>>()
 -> (vm::Muscle<S, R, FIBER_TYPES>, vm::State<S, R, FIBER_TYPES>) {
     let params = link::params(&paper_muscle());
     let muscle = vm::Muscle::build(&params, vm::TimeStep::MILLISECOND).expect("the paper's muscle");
@@ -33,7 +33,7 @@ fn built<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES>>()
     (muscle, state)
 }
 
-fn one_muscle<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES>>(
+fn one_muscle<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES, Units = ()>>(
     criterion: &mut Criterion,
     mode: &str,
     arithmetic: &str,

@@ -9,6 +9,9 @@ const ELEMENTS: &str = include_str!("../data/elements.csv");
 /// The set that is taken where a muscle names none.
 pub const DEFAULT_SET: &str = "paper-table-1";
 
+/// T_L of all published types, ms.
+const EFFECTIVE_LENGTH_TIME: f64 = 0.088;
+
 /// One row of a table: column name to value; an empty cell has no entry.
 pub type Row = BTreeMap<String, f64>;
 
@@ -94,8 +97,8 @@ fn find(rows: Vec<(String, Row)>, label: &str) -> Option<Row> {
 
 /// A fibre type from its row, times brought from milliseconds to seconds.
 ///
-/// A row with any of the coefficients of sag (or of yield) needs them all. `TL_ms`, the
-/// time constant of effective length, belongs to a mode that is not built yet.
+/// A row with any of the coefficients of sag (or of yield) needs them all; `TL_ms`, of effective length,
+/// is the same in all published types, and so where a row has none.
 pub fn fiber_type(row: &Row) -> Result<FiberType, RowError> {
     let get = |name: &'static str| row.get(name).copied().ok_or(RowError::Missing(name));
     let seconds = |name: &'static str| Ok::<f64, RowError>(get(name)? * 1e-3);
@@ -126,6 +129,7 @@ pub fn fiber_type(row: &Row) -> Result<FiberType, RowError> {
         Tf2: seconds("Tf2_ms")?,
         Tf3: seconds("Tf3_ms")?,
         Tf4: seconds("Tf4_ms")?,
+        TL: row.get("TL_ms").copied().unwrap_or(EFFECTIVE_LENGTH_TIME) * 1e-3,
         sag: if any(&["aS1", "aS2", "TS_ms"]) {
             Some(Sag { aS1: get("aS1")?, aS2: get("aS2")?, TS: seconds("TS_ms")? })
         } else {

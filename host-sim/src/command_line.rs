@@ -105,6 +105,10 @@ enum ModeName {
     Continuous,
     /// Intramuscular FES.
     Fes,
+    /// Natural discrete recruitment, motor unit by motor unit; the muscle file names `units`.
+    Discrete,
+    /// The same with an effective length of each unit (VM 3.x).
+    DiscreteLeff,
 }
 
 impl From<ModeName> for Mode {
@@ -112,6 +116,8 @@ impl From<ModeName> for Mode {
         match name {
             ModeName::Continuous => Self::Continuous,
             ModeName::Fes => Self::Fes,
+            ModeName::Discrete => Self::Discrete,
+            ModeName::DiscreteLeff => Self::DiscreteEffectiveLength,
         }
     }
 }

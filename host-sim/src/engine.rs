@@ -35,6 +35,8 @@ pub fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Continuous => "continuous",
         Mode::Fes => "fes",
+        Mode::Discrete => "discrete",
+        Mode::DiscreteEffectiveLength => "discrete-leff",
     }
 }
 
@@ -50,6 +52,12 @@ pub enum RunError {
     /// The reference has no bits to keep.
     #[error("the reference has no bits to compare")]
     NoBits,
+    /// The discrete modes were asked for, and the muscle does not say what units it has.
+    #[error("fiber[{0}].units = (missing): the discrete modes need the number of motor units")]
+    NoUnits(usize),
+    /// More motor units than are built here.
+    #[error("{0} motor units: a muscle has at most {most} here", most = MOST_UNITS)]
+    UnitCount(usize),
     /// A muscle of so many types is not built here.
     #[error("{0} fibre types: a muscle has 1 to {most} here", most = link::MOST_TYPES)]
     TypeCount(usize),
@@ -74,6 +82,9 @@ pub fn run(
 }
 
 fn run_reference(muscle: &Muscle, mode: Mode, trace: &InputTrace) -> Result<Vec<Row>, RunError> {
+    if matches!(mode, Mode::Discrete | Mode::DiscreteEffectiveLength) {
+        count_units(muscle)?;
+    }
     let path = trace.inputs[0].path_length;
     let mut simulation = Simulation::at_rest(muscle.clone(), mode, trace.time_step, path);
     let mut rows = vec![(simulation.sample(), vm::Status::empty())];
@@ -114,20 +125,69 @@ fn run_vm<S: vm::Scalar>(
     with_type_count!(
         muscle,
         N => match mode {
-            Mode::Continuous => run_mode::<S, vm::NaturalContinuous, N>(muscle, trace, watch),
-            Mode::Fes => run_mode::<S, vm::IntramuscularFes, N>(muscle, trace, watch),
+            Mode::Continuous => run_lumped::<S, vm::NaturalContinuous, N>(muscle, trace, watch),
+            Mode::Fes => run_lumped::<S, vm::IntramuscularFes, N>(muscle, trace, watch),
+            Mode::Discrete => run_discrete::<S, vm::FascicleLength, N>(muscle, trace, watch),
+            Mode::DiscreteEffectiveLength => {
+                run_discrete::<S, vm::EffectiveLength, N>(muscle, trace, watch)
+            }
         },
         else Err(RunError::TypeCount(muscle.fibers.len()))
     )
 }
 
-fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
+/// A mode that takes each fibre type as one unit.
+fn run_lumped<S: vm::Scalar, R: vm::Recruitment<S, N, Units = ()>, const N: usize>(
     muscle: &Muscle,
     trace: &InputTrace,
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, RunError> {
+    run_mode::<S, R, N>(muscle, &(), trace, watch)
+}
+
+/// The most motor units that a muscle can have here; in firmware the number is free.
+pub const MOST_UNITS: usize = 512;
+
+/// A mode of motor units, with room for at least as many as the muscle has.
+fn run_discrete<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize>(
+    muscle: &Muscle,
+    trace: &InputTrace,
+    watch: Watch<'_>,
+) -> Result<Vec<Row>, RunError> {
+    let count = count_units(muscle)?;
+    match count {
+        0..=8 => run_units::<S, A, N, 8>(muscle, trace, watch),
+        9..=64 => run_units::<S, A, N, 64>(muscle, trace, watch),
+        65..=MOST_UNITS => run_units::<S, A, N, MOST_UNITS>(muscle, trace, watch),
+        _ => Err(RunError::UnitCount(count)),
+    }
+}
+
+fn run_units<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize, const UNITS: usize>(
+    muscle: &Muscle,
+    trace: &InputTrace,
+    watch: Watch<'_>,
+) -> Result<Vec<Row>, RunError> {
+    let units = link::motor_units::<N, UNITS>(muscle)?;
+    run_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(muscle, &units, trace, watch)
+}
+
+/// How many motor units a muscle has; refused where a type has none.
+fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
+    match muscle.fibers.iter().position(|fiber| fiber.units.is_empty()) {
+        Some(fiber) => Err(RunError::NoUnits(fiber)),
+        None => Ok(muscle.fibers.iter().map(|fiber| fiber.units.len()).sum()),
+    }
+}
+
+fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
+    muscle: &Muscle,
+    units: &R::Units,
+    trace: &InputTrace,
+    watch: Watch<'_>,
+) -> Result<Vec<Row>, RunError> {
     let step = vm::TimeStep::from_seconds(trace.time_step)?;
-    let muscle = vm::Muscle::<S, R, N>::build(&link::params(muscle), step)?;
+    let muscle = vm::Muscle::<S, R, N>::build_with_units(&link::params(muscle), units, step)?;
     let mut state = muscle.rest(S::path_length(trace.inputs[0].path_length))?;
     let mut rows = vec![row(muscle.observe(&state))];
     for input in &trace.inputs[1..] {

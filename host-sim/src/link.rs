@@ -92,6 +92,17 @@ pub fn params<const N: usize>(muscle: &Muscle) -> vm::MuscleParams<N> {
     }
 }
 
+/// The motor units of a muscle of `N` types.
+///
+/// # Panics
+/// If it has another number of types.
+pub fn motor_units<const N: usize, const UNITS: usize>(
+    muscle: &Muscle,
+) -> Result<vm::MotorUnits<UNITS>, vm::ParameterError> {
+    let sizes = std::array::from_fn(|i| vm::UnitSizes::Listed(&muscle.fibers[i].units));
+    vm::MotorUnits::new(&params::<N>(muscle), sizes)
+}
+
 /// The elements that fibre types share.
 pub fn element_params(e: &Elements) -> vm::ElementParams {
     vm::ElementParams {
@@ -129,6 +140,7 @@ pub fn fiber_type(t: &FiberType) -> vm::FiberType {
             fall: t.Tf3,
             fall_per_activation: t.Tf4,
         },
+        effective_length_time: t.TL,
         sag: t.sag.map(|s| vm::SagParams {
             resting_level: s.aS1,
             firing_level: s.aS2,
@@ -168,6 +180,7 @@ const KEYS: &[(&str, &str, f64)] = &[
     ("excitation.rise_per_frequency", "Tf2_ms", 1e3),
     ("excitation.fall", "Tf3_ms", 1e3),
     ("excitation.fall_per_activation", "Tf4_ms", 1e3),
+    ("effective_length_time", "TL_ms", 1e3),
     ("sag.resting_level", "aS1", 1.0),
     ("sag.firing_level", "aS2", 1.0),
     ("sag.time_constant", "TS_ms", 1e3),

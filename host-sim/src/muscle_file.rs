@@ -2,7 +2,7 @@
 
 use crate::coefficients::{self, Row, RowError};
 use crate::link;
-use crate::reference::{Fiber, Muscle};
+use crate::reference::{Fiber, Muscle, UnitSizes};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -62,8 +62,22 @@ struct FiberTable {
     preset: Option<String>,
     fraction: f64,
     units: Option<i64>,
+    unit_sizes: Option<UnitSizesKey>,
     #[serde(flatten)]
     overrides: BTreeMap<String, toml::Value>,
+}
+
+/// `unit_sizes`: a name, `{ geometric = 0.1 }`, or a list.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "must be \"default\", \"equal\", { geometric = growth } or a list of numbers"
+)]
+enum UnitSizesKey {
+    Named(String),
+    Geometric { geometric: f64 },
+    Listed(Vec<f64>),
 }
 
 fn default_recruitment_saturation() -> f64 {
@@ -129,7 +143,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         L_mt_max: file.max_path_length_cm * 1e-2,
         U_r: file.recruitment_saturation,
         elements,
-        fibers: order.iter().map(|&index| fibers[index]).collect(),
+        fibers: order.iter().map(|&index| fibers[index].clone()).collect(),
     };
     link::validate(&muscle).map_err(|refusal| {
         let key = match refusal.fiber {
@@ -158,7 +172,7 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
     for (key, value) in &table.overrides {
         if !columns.contains(key) {
             let limit = format!(
-                "unknown key; a fibre has preset, fraction, units and the coefficients {}",
+                "unknown key; a fibre has preset, fraction, units, unit_sizes and the coefficients {}",
                 columns.join(", ")
             );
             return Err((key.clone(), value.to_string(), limit));
@@ -173,19 +187,6 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
         }
         row.insert(key.clone(), number);
     }
-    if let Some(units) = table.units
-        && units < 1
-    {
-        let limit = "must be a whole number of at least 1".to_owned();
-        return Err(("units".to_owned(), units.to_string(), limit));
-    }
-    // Effective length is of a mode to come; its time constant is checked all the same.
-    if let Some(&time_constant) = row.get("TL_ms")
-        && time_constant <= 0.0
-    {
-        let limit = "must be more than 0".to_owned();
-        return Err(("TL_ms".to_owned(), time_constant.to_string(), limit));
-    }
     let fiber_type = coefficients::fiber_type(&row).map_err(|error| match error {
         RowError::Missing(name) => (
             name.to_owned(),
@@ -196,5 +197,59 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
             ("rank".to_owned(), rank.to_string(), "must be a whole number from 1 to 255".to_owned())
         }
     })?;
-    Ok(Fiber { fraction: table.fraction, fiber_type })
+    let units = units(table, fiber_type.rank)?;
+    Ok(Fiber { fraction: table.fraction, units, fiber_type })
+}
+
+/// Most motor units of a fibre type.
+const MOST_UNITS: i64 = 500;
+
+/// Shares of the type's motor units; none where the file names no units.
+fn units(table: &FiberTable, rank: u8) -> Result<Vec<f64>, Refusal> {
+    let refuse =
+        |key: &str, value: String, limit: &str| Err((key.to_owned(), value, limit.to_owned()));
+    if let Some(units) = table.units
+        && !(1..=MOST_UNITS).contains(&units)
+    {
+        let limit = format!("must be a whole number from 1 to {MOST_UNITS}");
+        return refuse("units", units.to_string(), &limit);
+    }
+    let count = table.units.map(|units| units as usize);
+    let sizes = match &table.unit_sizes {
+        None => UnitSizes::Default,
+        Some(UnitSizesKey::Named(name)) => match name.as_str() {
+            "default" => UnitSizes::Default,
+            "equal" => UnitSizes::Equal,
+            _ => {
+                let limit = "must be \"default\", \"equal\", { geometric = growth } or a list";
+                return refuse("unit_sizes", format!("\"{name}\""), limit);
+            }
+        },
+        Some(UnitSizesKey::Geometric { geometric }) => {
+            let geometric = *geometric;
+            if !(-0.5..=1.0).contains(&geometric) {
+                return refuse("unit_sizes.geometric", geometric.to_string(), "must be -0.5 to 1");
+            }
+            UnitSizes::Geometric(geometric)
+        }
+        Some(UnitSizesKey::Listed(sizes)) => {
+            if let Some(size) = sizes.iter().find(|size| !(1e-6..=1e6).contains(*size)) {
+                return refuse("unit_sizes", size.to_string(), "each must be 1e-6 to 1e6");
+            }
+            if count.is_some_and(|count| count != sizes.len()) || sizes.is_empty() {
+                let limit = "must be as many as `units`, and at least one";
+                return refuse("unit_sizes", format!("{} sizes", sizes.len()), limit);
+            }
+            return Ok(UnitSizes::Listed(sizes.clone()).shares(rank, sizes.len()));
+        }
+    };
+    match count {
+        Some(count) => Ok(sizes.shares(rank, count)),
+        None if table.unit_sizes.is_some() => refuse(
+            "units",
+            "(missing)".to_owned(),
+            "give the number of units that have these sizes",
+        ),
+        None => Ok(Vec::new()),
+    }
 }

@@ -9,7 +9,9 @@ mod elements;
 mod muscle;
 mod recruitment;
 mod simulation;
+mod units;
 
 pub use muscle::{Elements, Fiber, FiberType, Muscle, Sag, Yielding};
 pub use recruitment::Mode;
 pub use simulation::{Input, Sample, Simulation, SolverError};
+pub use units::UnitSizes;

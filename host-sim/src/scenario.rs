@@ -2,7 +2,7 @@
 //! harder in one way or another.
 
 use crate::coefficients;
-use crate::reference::{Fiber, Input, Mode, Muscle};
+use crate::reference::{Fiber, Input, Mode, Muscle, UnitSizes};
 use crate::trace::{self, InputTrace};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -38,6 +38,15 @@ pub fn paper_muscle() -> Muscle {
     }
 }
 
+/// The same, each type of it divided into so many motor units of the authors' default sizes.
+pub fn paper_muscle_of_units(count: usize) -> Muscle {
+    let mut muscle = paper_muscle();
+    for fiber in &mut muscle.fibers {
+        fiber.units = UnitSizes::Default.shares(fiber.fiber_type.rank, count);
+    }
+    muscle
+}
+
 /// A small human hand muscle with all three fibre types and a long tendon: 4 g, 3.2 cm of
 /// fascicle, 6 cm of tendon.
 fn hand_muscle() -> Muscle {
@@ -71,29 +80,39 @@ fn feline_muscle() -> Muscle {
 
 fn preset(name: &str, fraction: f64) -> Fiber {
     let row = coefficients::fiber_row(name).expect("a published preset");
-    Fiber { fraction, fiber_type: coefficients::fiber_type(&row).expect("a full row") }
+    let fiber_type = coefficients::fiber_type(&row).expect("a full row");
+    Fiber { fraction, units: Vec::new(), fiber_type }
 }
 
-/// The vectors in `host-sim/data/vectors` of the modes that are built.
-const VECTORS: &[(&str, Mode, &str)] = &[
-    (
-        "continuous_activation_3hz",
-        Mode::Continuous,
-        include_str!("../data/vectors/continuous_activation_3hz.csv"),
-    ),
-    (
-        "continuous_length_3hz",
-        Mode::Continuous,
-        include_str!("../data/vectors/continuous_length_3hz.csv"),
-    ),
-    ("continuous_steps", Mode::Continuous, include_str!("../data/vectors/continuous_steps.csv")),
-    (
-        "passive_length_3hz",
-        Mode::Continuous,
-        include_str!("../data/vectors/passive_length_3hz.csv"),
-    ),
-    ("fes_ramp_20hz", Mode::Fes, include_str!("../data/vectors/fes_ramp_20hz.csv")),
-    ("fes_steps", Mode::Fes, include_str!("../data/vectors/fes_steps.csv")),
+/// One of the vectors in `host-sim/data/vectors`.
+struct Vector {
+    name: &'static str,
+    mode: Mode,
+    /// Motor units per type, in a discrete mode.
+    units: usize,
+    text: &'static str,
+}
+
+macro_rules! vector {
+    ($name:literal, $mode:ident, $units:literal) => {
+        Vector {
+            name: $name,
+            mode: Mode::$mode,
+            units: $units,
+            text: include_str!(concat!("../data/vectors/", $name, ".csv")),
+        }
+    };
+}
+
+const VECTORS: &[Vector] = &[
+    vector!("continuous_activation_3hz", Continuous, 0),
+    vector!("continuous_length_3hz", Continuous, 0),
+    vector!("continuous_steps", Continuous, 0),
+    vector!("passive_length_3hz", Continuous, 0),
+    vector!("fes_ramp_20hz", Fes, 0),
+    vector!("fes_steps", Fes, 0),
+    vector!("discrete_3_activation_3hz", Discrete, 3),
+    vector!("discrete_30_length_3hz", Discrete, 30),
 ];
 
 /// Path length of the paper's figures, m.
@@ -141,8 +160,8 @@ pub fn all() -> Vec<Scenario> {
         // FES starts its super-slow fibres, too, into a tendon that is hardly taut: for a moment
         // the muscle shortens faster than they can.
         let flags = match mode {
-            Mode::Continuous => Status::empty(),
             Mode::Fes => Status::FASCICLE_OUTSIDE_DOMAIN,
+            _ => Status::empty(),
         };
         scenarios.push(Scenario { flags, ..on_off });
         scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
@@ -153,6 +172,12 @@ pub fn all() -> Vec<Scenario> {
             [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
         }));
     }
+    // Of effective length there is no vector: the same inputs against the reference alone.
+    let discrete = scenarios.iter().filter(|scenario| scenario.mode == Mode::Discrete);
+    let mode = Mode::DiscreteEffectiveLength;
+    let effective: Vec<Scenario> =
+        discrete.map(|scenario| Scenario { mode, vector: None, ..scenario.clone() }).collect();
+    scenarios.extend(effective);
     let vectors = &scenarios[..VECTORS.len()];
     let mut others: Vec<Scenario> = scenarios.iter().map(|s| resampled(s, "0.5ms", 1, 2)).collect();
     others.extend(vectors.iter().map(|s| resampled(s, "0.1ms", 1, 10)));
@@ -167,7 +192,7 @@ fn smooth(x: f64) -> f64 {
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
-fn vector(&(name, mode, text): &(&str, Mode, &str)) -> Scenario {
+fn vector(&Vector { name, mode, units, text }: &Vector) -> Scenario {
     let path = Path::new(name);
     let trace = trace::parse_inputs(text.as_bytes(), path).expect("a built-in vector");
     let mut columns = trace::INPUT_COLUMNS.to_vec();
@@ -175,7 +200,7 @@ fn vector(&(name, mode, text): &(&str, Mode, &str)) -> Scenario {
     let rows = trace::numbers(text.as_bytes(), path, &columns).expect("a built-in vector");
     Scenario {
         name: name.to_owned(),
-        muscle: paper_muscle(),
+        muscle: if units > 0 { paper_muscle_of_units(units) } else { paper_muscle() },
         mode,
         trace,
         vector: Some(rows.iter().map(|(_, row)| row[4]).collect()),

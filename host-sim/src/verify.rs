@@ -34,6 +34,7 @@ pub struct Row {
     /// Mean error, % of F0.
     pub bias_pct_f0: f64,
     /// Largest difference from the same scheme in `f64`, % of F0: what rounding and kernels add.
+    #[serde(skip)]
     pub arithmetic_pct_f0: Option<f64>,
     /// What the largest error may be, % of F0.
     pub tolerance_pct_f0: f64,

@@ -93,7 +93,34 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         ("fraction = 0.4", "fraction = 0.4\nbeta = nan", &["fiber[1].beta = nan", "finite"]),
         ("fraction = 0.4", "fraction = 0.4\nbeta = \"b\"", &["fiber[1].beta", "a number"]),
         ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),
-        ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "at least 1"]),
+        ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "1 to 500"]),
+        ("fraction = 0.4", "fraction = 0.4\nunits = 501", &["fiber[1].units = 501", "1 to 500"]),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunits = 2\nunit_sizes = \"odd\"",
+            &["fiber[1].unit_sizes = \"odd\"", "equal"],
+        ),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunits = 2\nunit_sizes = [1, 2, 3]",
+            &["fiber[1].unit_sizes = 3 sizes", "as many"],
+        ),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunit_sizes = [1, 0]",
+            &["fiber[1].unit_sizes = 0", "1e-6"],
+        ),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunits = 2\nunit_sizes = { geometric = 2 }",
+            &["fiber[1].unit_sizes.geometric = 2", "-0.5 to 1"],
+        ),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunit_sizes = \"equal\"",
+            &["fiber[1].units = (missing)", "number of units"],
+        ),
+        ("fraction = 0.4", "fraction = 0.4\nTL_ms = 99", &["fiber[1].TL_ms = 99", "0.05 and 10"]),
         ("fraction = 0.4", "fraction = 0.4\nTf1_ms = 0", &["fiber[1].Tf1_ms = 0", "5 and 500"]),
         ("fraction = 0.4", "fraction = 0.4\ncV0 = -50", &["fiber[1].cV0", "pole"]),
         ("fraction = 0.4", "fraction = 0.4\nnf0 = 0.5\nnf1 = 20", &["fiber[1].nf1", "n_f"]),
@@ -174,6 +201,31 @@ fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
             assert!((cell(line, 1) - cell(expected, 4)).abs() < 0.15, "{line} {expected}");
             let status = if arithmetic == "reference" { ",unchecked" } else { ",ok" };
             assert!(line.ends_with(status), "{line}");
+        }
+    }
+}
+
+#[test]
+fn motor_units_give_the_authors_forces_and_have_to_be_named() {
+    const VECTOR: &str = include_str!("../data/vectors/discrete_3_activation_3hz.csv");
+    let three = MUSCLE.replace("[[fiber]]", "[[fiber]]\nunits = 3");
+    let force = |line: &str, column: usize| -> f64 {
+        line.split(',').nth(column).expect("a cell").parse().expect("a number")
+    };
+    for arithmetic in ["reference", "f32", "fixed"] {
+        let bench = Bench::new(&three, VECTOR);
+        let output = bench.run("discrete", arithmetic);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = fs::read_to_string(bench.path("out.csv")).expect("the output file");
+        for (line, expected) in text.lines().zip(VECTOR.lines()).skip(102) {
+            let (found, expected) = (force(line, 1), force(expected, 4));
+            assert!((found - expected).abs() < 0.01, "{arithmetic}: {line}, {expected} N");
+        }
+        for mode in ["discrete", "discrete-leff"] {
+            let output = Bench::new(MUSCLE, VECTOR).run(mode, arithmetic);
+            assert!(!output.status.success());
+            let message = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(message.contains("fiber[0].units = (missing)"), "{message}");
         }
     }
 }

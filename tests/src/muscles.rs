@@ -3,12 +3,46 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use vm_nostd::{
-    ElementParams, FiberParams, FiberType, MuscleParams, TimeStep, feline_vm4, human_vm4,
-    paper_table_1,
+    ActingLength, ElementParams, FiberParams, FiberType, IntramuscularFes, MotorUnits, Muscle,
+    MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, Scalar, TimeStep, UnitSizes,
+    feline_vm4, human_vm4, paper_table_1,
 };
 
 /// Fibre types of these muscles.
 pub const TYPES: usize = 2;
+
+/// A mode that the property tests drive muscles in.
+pub trait Mode<S: Scalar>: Recruitment<S, TYPES> {
+    /// What it needs to know of a muscle besides its parameters.
+    fn units(params: &MuscleParams<TYPES>) -> Self::Units;
+}
+
+impl<S: Scalar> Mode<S> for NaturalContinuous {
+    fn units(_: &MuscleParams<TYPES>) {}
+}
+
+impl<S: Scalar> Mode<S> for IntramuscularFes {
+    fn units(_: &MuscleParams<TYPES>) {}
+}
+
+/// Seven motor units in a muscle that has room for eight.
+pub type Discrete<A> = NaturalDiscrete<A, 8>;
+
+impl<S: Scalar, A: ActingLength<S>> Mode<S> for Discrete<A> {
+    fn units(params: &MuscleParams<TYPES>) -> MotorUnits<8> {
+        let sizes = [UnitSizes::Default(3), UnitSizes::Geometric(4, 0.3)];
+        MotorUnits::new(params, sizes).expect("valid units")
+    }
+}
+
+/// A valid muscle in a mode.
+pub fn built<S: Scalar, R: Mode<S>>(
+    params: &MuscleParams<TYPES>,
+    step: TimeStep,
+) -> Muscle<S, R, TYPES> {
+    let units = R::units(params);
+    Muscle::build_with_units(params, &units, step).expect("a valid muscle")
+}
 
 /// Always the same cases, so that a failure is of the change and not of chance; another seed with
 /// PROPTEST_RNG_SEED, more cases by the number below.

@@ -8,7 +8,9 @@ use vm_nostd::{
 
 const CAPACITY: usize = 4;
 
-fn at_rest<S: Arithmetic, R: Recruitment<S, 2>>(path: f64) -> (Muscle<S, R, 2>, State<S, R, 2>) {
+fn at_rest<S: Arithmetic, R: Recruitment<S, 2, Units = ()>>(
+    path: f64,
+) -> (Muscle<S, R, 2>, State<S, R, 2>) {
     let muscle = Muscle::<S, R, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
     let state = muscle.rest(S::path_length(path)).expect("a path in range");
     (muscle, state)

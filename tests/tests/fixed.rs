@@ -8,13 +8,13 @@ use host_sim::reference::{Input as ReferenceInput, Mode};
 use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
 use proptest::prelude::*;
-use system_tests::muscles::{config, muscles, steps};
+use system_tests::muscles::{Discrete, Mode as AnyMode, built, config, muscles, steps};
 use vm_nostd::{
-    ActivationParams, CompressionParams, ContinuousMuscle, ElementParams, ExcitationParams,
-    FesMuscle, FiberParams, FiberType, Fixed, ForceLengthParams, ForceVelocityParams, Input,
-    IntramuscularFes, Muscle, MuscleParams, NaturalContinuous, ParallelParams, Recruitment,
-    RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, human_vm4,
-    paper_table_1,
+    ActivationParams, CompressionParams, ContinuousMuscle, EffectiveLength, ElementParams,
+    ExcitationParams, FascicleLength, FesMuscle, FiberParams, FiberType, Fixed, ForceLengthParams,
+    ForceVelocityParams, Input, IntramuscularFes, Muscle, MuscleParams, NaturalContinuous,
+    ParallelParams, Recruitment, RestoreError, SagParams, Scalar, State, TendonParams, TimeStep,
+    YieldParams, human_vm4, paper_table_1,
 };
 
 /// Steady force of the reference, N, at a constant input.
@@ -27,7 +27,7 @@ fn settled(mode: Mode, input: ReferenceInput) -> f64 {
 }
 
 /// Force after ten minutes of a constant input, N.
-fn after_ten_minutes<R: Recruitment<Fixed, 2>>(input: ReferenceInput) -> f64 {
+fn after_ten_minutes<R: Recruitment<Fixed, 2, Units = ()>>(input: ReferenceInput) -> f64 {
     let muscle = Muscle::<Fixed, R, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
     let input = Input::<Fixed> {
         activation: Scalar::from_f64(input.activation),
@@ -107,6 +107,7 @@ fn any_type() -> impl Strategy<Value = FiberType> {
                 fall: t[2],
                 fall_per_activation: t[3],
             },
+            effective_length_time: 8.8e-5,
             sag: Some(SagParams { resting_level: s.0, firing_level: s.1, time_constant: s.2 }),
             yielding: Some(YieldParams { depth: y.0, velocity: y.1, time_constant: y.2 }),
         },
@@ -172,12 +173,12 @@ fn any_bits() -> impl Strategy<Value = (i32, i32, i32)> {
     (activation, path, frequency)
 }
 
-fn takes_any_bits<R: Recruitment<Fixed, 2>>(
+fn takes_any_bits<R: AnyMode<Fixed>>(
     params: &MuscleParams<2>,
     step: TimeStep,
     inputs: &[(i32, i32, i32)],
 ) {
-    let muscle = Muscle::<Fixed, R, 2>::build(params, step).expect("a valid muscle");
+    let muscle = built::<Fixed, R>(params, step);
     let mut state = muscle.rest(muscle.path_length_range().1).expect("a path in range");
     for &(activation, path, frequency) in inputs {
         let mut input = Input::<Fixed>::from_integers(0, 0, 0);
@@ -196,13 +197,13 @@ fn takes_any_bits<R: Recruitment<Fixed, 2>>(
 }
 
 /// Largest difference of the forces in `f32` and in fixed point, % of F0, on the same inputs.
-fn difference<R: Recruitment<f32, 2>, Q: Recruitment<Fixed, 2>>(
+fn difference<R: AnyMode<f32>, Q: AnyMode<Fixed>>(
     params: &MuscleParams<2>,
     segments: &[(u16, f64, u16)],
 ) -> f64 {
     let step = TimeStep::MILLISECOND;
-    let float = Muscle::<f32, R, 2>::build(params, step).expect("a valid muscle");
-    let fixed = Muscle::<Fixed, Q, 2>::build(params, step).expect("a valid muscle");
+    let float = built::<f32, R>(params, step);
+    let fixed = built::<Fixed, Q>(params, step);
     let (shortest, longest) = params.path_domain();
     let mut path = shortest + 0.7 * (longest - shortest);
     let mut float_state = float.rest(path as f32).expect("a path in range");
@@ -241,6 +242,8 @@ proptest! {
     ) {
         takes_any_bits::<NaturalContinuous>(&params, step, &inputs);
         takes_any_bits::<IntramuscularFes>(&params, step, &inputs);
+        takes_any_bits::<Discrete<FascicleLength>>(&params, step, &inputs);
+        takes_any_bits::<Discrete<EffectiveLength>>(&params, step, &inputs);
     }
 
     #[test]
@@ -253,6 +256,8 @@ proptest! {
         if ContinuousMuscle::<Fixed, 2>::build(&params, step).is_ok() {
             takes_any_bits::<NaturalContinuous>(&params, step, &inputs);
             takes_any_bits::<IntramuscularFes>(&params, step, &inputs);
+            takes_any_bits::<Discrete<FascicleLength>>(&params, step, &inputs);
+            takes_any_bits::<Discrete<EffectiveLength>>(&params, step, &inputs);
         }
     }
 
@@ -274,19 +279,19 @@ fn states_that_no_tick_leaves_are_refused() {
     let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
     let saved: Vec<u32> = state.words().collect();
     let whole = |value: u32| value << 24;
-    // Words 5 to 13 are of the slow type, which yields and does not sag; lags have two, the
-    // higher one second.
+    // Words 3 and 4 are Y of the slow type, which yields and does not sag, 7 and 8 U_eff, and 9 to 15 the
+    // rest of that type; lags have two, the higher one second.
     for (word, value) in [
         (0, 0x8000_0000), // extension -128
         (0, whole(129)),  // extension -127
         (1, whole(61)),   // velocity
         (2, 0x7FFF_FFFF), // path of 4.19 m
-        (4, whole(1)),    // U_eff under FES
-        (6, whole(2)),    // f_int above 1 under FES
-        (8, whole(100)),  // f_eff
-        (10, 0),          // Y below 1 - c_Y
-        (12, whole(100)), // S of a type without sag
-        (13, whole(2)),   // Af
+        (4, 0),           // Y below 1 - c_Y
+        (8, whole(1)),    // U_eff under FES
+        (10, whole(2)),   // f_int above 1 under FES
+        (12, whole(100)), // f_eff
+        (14, whole(100)), // S of a type without sag
+        (15, whole(2)),   // Af
     ] {
         let mut words = saved.clone();
         words[word] = value;

@@ -2,7 +2,8 @@
 
 use firmware::MUSCLE;
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, Input, Limit, MuscleParams, RestoreError, Status, TimeStep,
+    ContinuousMuscle, DiscreteMuscle, FesMuscle, Input, Limit, MotorUnits, MuscleParams,
+    RestoreError, Status, TimeStep, UnitSizes,
 };
 
 type Params = MuscleParams<2>;
@@ -57,6 +58,7 @@ const OF_FIBER: &[Row] = &[
     ("force_velocity.lengthening_velocity", 0.01, 10.0, |p, x| {
         p.fibers[1].fiber_type.force_velocity.lengthening_velocity = x;
     }),
+    ("effective_length_time", 5e-5, 0.01, |p, x| p.fibers[1].fiber_type.effective_length_time = x),
     ("activation.scale", 0.05, 10.0, |p, x| p.fibers[1].fiber_type.activation.scale = x),
     ("activation.exponent", 0.5, 10.0, |p, x| p.fibers[1].fiber_type.activation.exponent = x),
     ("activation.length_dependence", 0.0, 20.0, |p, x| {
@@ -277,4 +279,65 @@ fn fascicles_beyond_the_domain_are_flagged_and_their_passive_force_still_holds()
         assert_eq!(output.status, Status::FASCICLE_OUTSIDE_DOMAIN);
         assert!((output.force - at_rest.force).abs() < 1e-3, "{output:?} {at_rest:?}");
     }
+}
+
+#[test]
+fn motor_units_that_cannot_be_are_refused_by_field_value_and_limit() {
+    let refused = |sizes| MotorUnits::<8>::new(&MUSCLE, sizes).expect_err("units to refuse");
+    let three = UnitSizes::Default(3);
+    for (sizes, field, fiber, value) in [
+        (UnitSizes::Equal(0), "units: their number", Some(1), 0.0),
+        (UnitSizes::Listed(&[]), "units: their number", Some(1), 0.0),
+        (UnitSizes::Default(9), "units: their number", Some(1), 9.0),
+        (UnitSizes::Default(6), "units: the number of all types together", None, 9.0),
+        (UnitSizes::Geometric(2, 1.5), "units: geometric growth", Some(1), 1.5),
+        (UnitSizes::Geometric(2, -0.6), "units: geometric growth", Some(1), -0.6),
+        (UnitSizes::Listed(&[1.0, 0.0]), "units: a listed size", Some(1), 0.0),
+        (UnitSizes::Listed(&[1.0, -1.0]), "units: a listed size", Some(1), -1.0),
+    ] {
+        let error = refused([three, sizes]);
+        assert_eq!((error.field, error.fiber, error.value), (field, fiber, value), "{sizes:?}");
+        assert!(matches!(error.limit, Limit::Within { .. }));
+    }
+    let error = refused([three, UnitSizes::Listed(&[f64::NAN])]);
+    assert!(error.value.is_nan() && error.field == "units: a listed size");
+    let units = MotorUnits::<8>::new(&MUSCLE, [three, UnitSizes::Listed(&[1.0, 2.0])]);
+    let units = units.expect("five units");
+    assert_eq!(units.count(), 5);
+
+    // Units of one muscle are not another's.
+    let mut other = MUSCLE;
+    (other.fibers[0].fraction, other.fibers[1].fraction) = (0.5, 0.5);
+    let built =
+        DiscreteMuscle::<f32, 2, 8>::build_with_units(&other, &units, TimeStep::MILLISECOND);
+    let error = built.expect_err("another muscle");
+    assert_eq!((error.field, error.fiber), (SHARE, Some(0)));
+    assert!((error.value - 0.6).abs() < 1e-9, "{error}");
+}
+
+const SHARE: &str = "units: the fraction of the type they were made for";
+
+#[test]
+fn rules_of_sizes_recruit_as_the_same_sizes_listed() {
+    // Thresholds are where a unit's frequency sets in; equal forces say that they are equal.
+    let steady = |sizes| {
+        let units = MotorUnits::<6>::new(&MUSCLE, [sizes; 2]).expect("valid units");
+        let muscle =
+            DiscreteMuscle::<f64, 2, 6>::build_with_units(&MUSCLE, &units, TimeStep::MILLISECOND)
+                .expect("a valid muscle");
+        [0.1, 0.3, 0.5, 0.7].map(|activation| {
+            let mut state = muscle.rest(0.16).expect("in range");
+            let input = Input { activation, path_length: 0.16, stimulation_frequency: 0.0 };
+            (0..1000).fold(0.0, |_, _| muscle.step(&mut state, input).force)
+        })
+    };
+    let close = |a: [f64; 4], b: [f64; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(close(steady(UnitSizes::Equal(3)), steady(UnitSizes::Listed(&[5.0, 5.0, 5.0]))));
+    let geometric = steady(UnitSizes::Geometric(3, 0.5));
+    assert!(close(geometric, steady(UnitSizes::Listed(&[4.0, 6.0, 9.0]))));
+    assert!(!close(geometric, steady(UnitSizes::Equal(3))));
+    // By default a slow type, of rank 2, has 3 : 4 : 5 and a fast one, of rank 3, 4 : 5 : 6.
+    let listed = [UnitSizes::Listed(&[3.0, 4.0, 5.0]), UnitSizes::Listed(&[4.0, 5.0, 6.0])];
+    let by_default = MotorUnits::<6>::new(&MUSCLE, [UnitSizes::Default(3); 2]).expect("valid");
+    assert_eq!(by_default, MotorUnits::new(&MUSCLE, listed).expect("valid"));
 }

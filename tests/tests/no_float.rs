@@ -32,7 +32,7 @@ fn steps(board: Board, function: &str) -> Option<Reached> {
 #[test]
 fn no_floating_point_and_no_long_division_is_reachable_from_the_tick() {
     for board in [STM32F405, CORTEX_M3, CORTEX_M0] {
-        for function in ["step_continuous_fixed", "step_fes_fixed"] {
+        for function in ["step_continuous_fixed", "step_fes_fixed", "step_discrete_fixed"] {
             let Some(reached) = steps(board, function) else { return };
             let what = format!("{function} on {}", board.triple);
             assert!(reached.functions.len() > 3, "{what}: {:?}", reached.functions);

@@ -1,10 +1,10 @@
 //! What holds for every valid muscle, whatever its inputs.
 
 use proptest::prelude::*;
-use system_tests::muscles::{TYPES, config, muscles, steps};
+use system_tests::muscles::{Discrete, Mode, TYPES, built, config, muscles, steps};
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, Input, IntramuscularFes, Muscle, MuscleParams, NaturalContinuous,
-    Output, Recruitment, State, Status, TimeStep,
+    ContinuousMuscle, EffectiveLength, FascicleLength, FesMuscle, Input, IntramuscularFes, Muscle,
+    MuscleParams, NaturalContinuous, Output, State, Status, TimeStep,
 };
 
 type Params = MuscleParams<TYPES>;
@@ -47,7 +47,7 @@ fn any_number() -> impl Strategy<Value = f32> {
     ]
 }
 
-fn all_finite<R>(output: &Output<f32>, state: &State<f32, R, TYPES>) -> bool {
+fn all_finite<R: Mode<f32>>(output: &Output<f32>, state: &State<f32, R, TYPES>) -> bool {
     let numbers = [output.force, output.fascicle_length, output.fascicle_velocity];
     numbers.into_iter().all(f32::is_finite)
         && state.words().all(|word| f32::from_bits(word).is_finite())
@@ -60,7 +60,7 @@ fn path_range(params: &Params) -> (f32, f32) {
 }
 
 /// Steps through segments; the path moves slower than 5 L_ce0/s and stays in range.
-fn drive<R: Recruitment<f32, TYPES>>(
+fn drive<R: Mode<f32>>(
     muscle: &Muscle<f32, R, TYPES>,
     params: &Params,
     step: TimeStep,
@@ -85,12 +85,8 @@ fn drive<R: Recruitment<f32, TYPES>>(
     }
 }
 
-fn stays_in_range<R: Recruitment<f32, TYPES>>(
-    params: &Params,
-    step: TimeStep,
-    segments: &[Segment],
-) {
-    let muscle = Muscle::<f32, R, TYPES>::build(params, step).expect("a valid muscle");
+fn stays_in_range<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Segment]) {
+    let muscle = built::<f32, R>(params, step);
     let most = 3.0 * params.max_isometric_force() as f32;
     let of_state = Status::FASCICLE_OUTSIDE_DOMAIN
         | Status::FASCICLE_LENGTH_LIMITED
@@ -112,12 +108,8 @@ fn stays_in_range<R: Recruitment<f32, TYPES>>(
     });
 }
 
-fn takes_anything<R: Recruitment<f32, TYPES>>(
-    params: &Params,
-    step: TimeStep,
-    inputs: &[(f32, f32, f32)],
-) {
-    let muscle = Muscle::<f32, R, TYPES>::build(params, step).expect("a valid muscle");
+fn takes_anything<R: Mode<f32>>(params: &Params, step: TimeStep, inputs: &[(f32, f32, f32)]) {
+    let muscle = built::<f32, R>(params, step);
     let (shortest, longest) = path_range(params);
     let mut state = muscle.rest(0.5 * (shortest + longest)).expect("a path in range");
     for &(activation, path_length, stimulation_frequency) in inputs {
@@ -165,12 +157,8 @@ fn takes_anything<R: Recruitment<f32, TYPES>>(
     }
 }
 
-fn continues_identically<R: Recruitment<f32, TYPES>>(
-    params: &Params,
-    step: TimeStep,
-    segments: &[Segment],
-) {
-    let muscle = Muscle::<f32, R, TYPES>::build(params, step).expect("a valid muscle");
+fn continues_identically<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Segment]) {
+    let muscle = built::<f32, R>(params, step);
     let mut restored: Option<State<f32, R, TYPES>> = None;
     drive(&muscle, params, step, segments, |state, input, output| {
         if let Some(other) = &mut restored {
@@ -195,6 +183,8 @@ proptest! {
     ) {
         stays_in_range::<NaturalContinuous>(&params, step, &s);
         stays_in_range::<IntramuscularFes>(&params, step, &s);
+        stays_in_range::<Discrete<FascicleLength>>(&params, step, &s);
+        stays_in_range::<Discrete<EffectiveLength>>(&params, step, &s);
     }
 
     #[test]
@@ -205,6 +195,8 @@ proptest! {
     ) {
         takes_anything::<NaturalContinuous>(&params, step, &inputs);
         takes_anything::<IntramuscularFes>(&params, step, &inputs);
+        takes_anything::<Discrete<FascicleLength>>(&params, step, &inputs);
+        takes_anything::<Discrete<EffectiveLength>>(&params, step, &inputs);
     }
 
     #[test]
@@ -215,6 +207,8 @@ proptest! {
     ) {
         continues_identically::<NaturalContinuous>(&params, step, &s);
         continues_identically::<IntramuscularFes>(&params, step, &s);
+        continues_identically::<Discrete<FascicleLength>>(&params, step, &s);
+        continues_identically::<Discrete<EffectiveLength>>(&params, step, &s);
     }
 
     #[test]
@@ -267,7 +261,7 @@ proptest! {
 }
 
 /// The force after three seconds of a constant activation at optimal fascicle length.
-fn steady_force<R: Recruitment<f32, TYPES>>(
+fn steady_force<R: Mode<f32>>(
     muscle: &Muscle<f32, R, TYPES>,
     params: &Params,
     activation: f32,

@@ -4,41 +4,63 @@ use host_sim::coefficients;
 use host_sim::engine::{self, Arithmetic};
 use host_sim::link;
 use host_sim::reference::{Input, Mode};
-use host_sim::scenario::paper_muscle;
+use host_sim::scenario::{paper_muscle, paper_muscle_of_units};
 use host_sim::trace::InputTrace;
 use vm_nostd::{ElementParams, FiberType, feline_vm4, human_vm4, paper_table_1};
 
-/// Steady force (N) of natural continuous recruitment on a 16 cm path, by activation, from the
-/// authors' program.
-const STATIC_FORCE: [(f64, f64); 11] = [
-    (0.05, 5.244),
-    (0.1, 10.905),
-    (0.2, 23.876),
-    (0.3, 38.403),
-    (0.4, 53.929),
-    (0.5, 68.993),
-    (0.6, 84.388),
-    (0.7, 103.551),
-    (0.8, 123.752),
-    (0.9, 143.822),
-    (1.0, 163.384),
+/// Steady force (N) on a 16 cm path by activation, from the authors' program: natural continuous
+/// recruitment, and natural discrete recruitment of 3 + 3 and of 30 + 30 motor units.
+const STATIC_FORCE: [(f64, [f64; 3]); 11] = [
+    (0.05, [5.244, 0.307, 5.938]),
+    (0.1, [10.905, 0.307, 11.855]),
+    (0.2, [23.876, 16.061, 25.549]),
+    (0.3, [38.403, 37.293, 41.896]),
+    (0.4, [53.929, 42.511, 59.156]),
+    (0.5, [68.993, 70.776, 77.675]),
+    (0.6, [84.388, 89.337, 96.941]),
+    (0.7, [103.551, 111.894, 119.096]),
+    (0.8, [123.752, 137.049, 143.575]),
+    (0.9, [143.822, 157.451, 159.204]),
+    (1.0, [163.384, 165.026, 165.026]),
 ];
 
-fn steady_force(activation: f64, arithmetic: Arithmetic) -> f64 {
+/// The force after three seconds of an activation; no units: natural continuous recruitment.
+fn steady_force(units: Option<usize>, activation: f64, arithmetic: Arithmetic) -> f64 {
+    let (muscle, mode) = match units {
+        None => (paper_muscle(), Mode::Continuous),
+        Some(count) => (paper_muscle_of_units(count), Mode::Discrete),
+    };
     let input = Input { activation, path_length: 0.16, stimulation_frequency: 0.0 };
     let trace = InputTrace { start: 0.0, time_step: 1e-3, inputs: vec![input; 3001] };
-    let rows = engine::run(&paper_muscle(), Mode::Continuous, arithmetic, &trace).expect("a run");
+    let rows = engine::run(&muscle, mode, arithmetic, &trace).expect("a run");
     rows.last().expect("a row").0.force
 }
 
 #[test]
-fn the_static_curve_of_force_by_activation_is_the_authors() {
-    for (activation, force) in STATIC_FORCE {
-        // The table has three decimals.
-        let reference = steady_force(activation, Arithmetic::Reference);
-        assert!((reference - force).abs() < 0.001, "U {activation}: {reference} N, not {force} N");
-        let f32 = steady_force(activation, Arithmetic::F32);
-        assert!((f32 - force).abs() < 0.002, "U {activation}: {f32} N in f32, not {force} N");
+fn the_static_curves_of_force_by_activation_are_the_authors() {
+    for (activation, forces) in STATIC_FORCE {
+        for (units, force) in [None, Some(3), Some(30)].into_iter().zip(forces) {
+            // The last unit's threshold is 0.8 but for rounding, by which the authors' program
+            // recruits it at 0.8 as one of 6 and not as one of 60: the model is asked beside it.
+            let beside = match units {
+                Some(3) if activation == 0.8 => 1e-6,
+                Some(_) if activation == 0.8 => -1e-6,
+                _ => 0.0,
+            };
+            // The table has three decimals.
+            for (arithmetic, at, most) in [
+                (Arithmetic::Reference, activation, 0.001),
+                (Arithmetic::F32, activation + beside, 0.002),
+                (Arithmetic::Fixed, activation + beside, 0.02),
+            ] {
+                let found = steady_force(units, at, arithmetic);
+                let error = (found - force).abs();
+                assert!(
+                    error < most,
+                    "{units:?} U {activation}: {found} {arithmetic:?}, {force} N"
+                );
+            }
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 //! n_f = nf0 + nf1 (1/L - 1).
 
 use crate::error::{ParameterError, within};
+use crate::recruitment::Course;
 use crate::scalar::Scalar;
 
 /// Coefficients of Af.
@@ -100,9 +101,9 @@ impl<S: Scalar> ActivationFrequency<S> {
 impl<S: Scalar> ActivationCurve<S> {
     /// Af for an effective frequency Y S f (f0.5, at least 0), and how much Af changes while
     /// that frequency changes by `frequency_change` and the fascicle by `length_change` (L_ce0).
-    pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> (S, S) {
+    pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> Course<S> {
         if frequency <= S::ZERO {
-            return (S::ZERO, S::ZERO);
+            return Course::constant(S::ZERO);
         }
         // Keeps the logarithm in its domain.
         let inside = frequency.max(S::LEAST);
@@ -112,6 +113,6 @@ impl<S: Scalar> ActivationCurve<S> {
         let relative = frequency_change.ratio(inside).max(-self.steepest).min(self.steepest);
         let exponent_change = self.exponent_slope * length_change;
         let change = self.exponent * relative + (logarithm - S::ONE) * exponent_change;
-        (value, growth * change)
+        Course { middle: value, change: growth * change }
     }
 }

@@ -40,11 +40,18 @@ pub use error::{Limit, ParameterError};
 pub use excitation::ExcitationParams;
 pub use force_length::ForceLengthParams;
 pub use force_velocity::ForceVelocityParams;
-pub use muscle::{ContinuousMuscle, FesMuscle, Input, Muscle, Output};
+pub use muscle::{
+    ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle, Input, Muscle, Output,
+};
 pub use params::{ElementParams, FiberParams, FiberType, MuscleParams};
 pub use passive::{CompressionParams, ParallelParams};
 pub use presets::{feline_vm4, human_vm4, paper_table_1};
-pub use recruitment::{IntramuscularFes, NaturalContinuous, Recruitment};
+#[doc(hidden)]
+pub use recruitment::ActingLength;
+pub use recruitment::{
+    EffectiveLength, FascicleLength, IntramuscularFes, MotorUnits, NaturalContinuous,
+    NaturalDiscrete, Recruitment, UnitSizes,
+};
 pub use sag::SagParams;
 pub use scalar::Scalar;
 pub use scalar::fixed::Fixed;

@@ -2,7 +2,7 @@
 
 use crate::activation::ActivationFrequency;
 use crate::contraction::{Contractile, Contraction, Motion};
-use crate::domain::{Domain, Range, Status};
+use crate::domain::{Domain, Status};
 use crate::error::{ParameterError, within};
 use crate::excitation::Excitation;
 use crate::force_length::ForceLength;
@@ -10,14 +10,14 @@ use crate::force_velocity::ForceVelocity;
 use crate::params::{FiberParams, MuscleParams};
 use crate::passive::{Compression, Parallel};
 use crate::recruitment::{
-    Course, IntramuscularFes, NaturalContinuous, Recruited, Recruitment, RecruitmentTick,
+    Course, EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous,
+    NaturalDiscrete, Recruited, Recruitment, RecruitmentTick,
 };
 use crate::sag::Sag;
 use crate::scalar::Scalar;
-use crate::state::{FiberRanges, FiberState, Ranges, RestoreError, State};
+use crate::state::{RestoreError, Saved, State};
 use crate::time_step::TimeStep;
 use crate::yielding::Yielding;
-use core::marker::PhantomData;
 
 /// Inputs of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +52,13 @@ pub type ContinuousMuscle<S, const N: usize> = Muscle<S, NaturalContinuous, N>;
 /// A muscle of `N` fibre types under intramuscular FES.
 pub type FesMuscle<S, const N: usize> = Muscle<S, IntramuscularFes, N>;
 
+/// A muscle of `N` fibre types and at most `UNITS` motor units under natural discrete recruitment.
+pub type DiscreteMuscle<S, const N: usize, const UNITS: usize> =
+    Muscle<S, NaturalDiscrete<FascicleLength, UNITS>, N>;
+/// The same with an effective length of each unit (VM 3.x).
+pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
+    Muscle<S, NaturalDiscrete<EffectiveLength, UNITS>, N>;
+
 /// A muscle of `N` fibre types, computed in `S`, recruited as `R` says: constant coefficients.
 ///
 /// All that changes is in its [`State`], so that one muscle can serve several states.
@@ -72,11 +79,12 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 
 /// The coefficients of one fibre type.
 #[derive(Clone, Copy, Debug)]
-struct Fiber<S: Scalar> {
-    excitation: Excitation<S>,
-    sag: Sag<S>,
+#[doc(hidden)]
+pub struct Fiber<S: Scalar> {
+    pub(crate) excitation: Excitation<S>,
+    pub(crate) sag: Sag<S>,
     yielding: Yielding<S>,
-    activation: ActivationFrequency<S>,
+    pub(crate) activation: ActivationFrequency<S>,
     force_length: ForceLength<S>,
     force_velocity: ForceVelocity<S>,
 }
@@ -98,10 +106,22 @@ impl<S: Scalar> Fiber<S> {
 /// Bisections that bring a resting length to the last bit of `f32` and near that of `f64`.
 const REST_BISECTIONS: usize = 48;
 
-impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
+impl<S: Scalar, R: Recruitment<S, N, Units = ()>, const N: usize> Muscle<S, R, N> {
     /// Builds a muscle for a time step, or refuses with the name of the field, its value and the
     /// limit it broke.
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
+        Self::build_with_units(params, &(), step)
+    }
+}
+
+impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
+    /// Builds a muscle whose mode has motor units for a time step, or refuses with the name of the
+    /// field, its value and the limit it broke.
+    pub fn build_with_units(
+        params: &MuscleParams<N>,
+        units: &R::Units,
+        step: TimeStep,
+    ) -> Result<Self, ParameterError> {
         params.validate()?;
         params.validate_magnitudes(step, S::LARGEST_COEFFICIENT)?;
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
@@ -110,7 +130,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let elements = &params.elements;
         Ok(Self {
             domain: Domain::new(params),
-            recruitment: R::Coefficients::new(params, step),
+            recruitment: R::Coefficients::new(params, units, step)?,
             fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
             compression: Compression::new(&elements.compression, step),
@@ -146,10 +166,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             tendon_extension: (least + most) * S::HALF,
             fascicle_velocity: S::ZERO,
             path_length,
-            effective_activation: S::ZERO.slow(),
-            fibers: self.fibers.map(|fiber| FiberState::at_rest(fiber.sag.resting_level)),
-            activations: [S::ZERO; N],
-            recruitment: PhantomData,
+            yieldings: [S::ONE.slow(); N],
+            recruitment: self.recruitment.at_rest(&self.fibers),
         })
     }
 
@@ -168,15 +186,24 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         &self,
         words: impl IntoIterator<Item = S::Bits>,
     ) -> Result<State<S, R, N>, RestoreError> {
-        let (effective_activation, frequencies) = self.recruitment.ranges();
-        let mut fibers = self.fibers.map(|fiber| FiberRanges {
-            frequency: Range { least: S::ZERO, most: S::ZERO },
-            yielding: fiber.yielding.range(),
-            sag: fiber.sag.range(),
-        });
-        fibers.iter_mut().zip(frequencies).for_each(|(fiber, range)| fiber.frequency = range);
-        let ranges = Ranges { effective_activation, fibers };
-        State::from_words(words, &self.domain, &self.contraction.tendon, &ranges)
+        let mut saved = Saved::new(words.into_iter(), State::<S, R, N>::WORDS);
+        let tendon_extension = saved.number(S::is_finite)?;
+        let speeds = &self.domain.fascicle_velocity;
+        let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
+        let path_length = saved.path::<S>(&self.domain.path_length)?;
+        let length = self.contraction.tendon.fascicle_length(path_length, tendon_extension);
+        let (nearest, _) = self.domain.fascicle_length.clip(length);
+        // A length that was stopped at a limit comes back with the rounding of its extension.
+        if (length - nearest).abs() > S::from_f64(1e-4) {
+            return Err(RestoreError::Value { word: 0 });
+        }
+        let mut yieldings = [S::ONE.slow(); N];
+        for (kept, fiber) in yieldings.iter_mut().zip(&self.fibers) {
+            *kept = saved.slow(&fiber.yielding.range())?;
+        }
+        let recruitment = self.recruitment.restored(&self.fibers, &mut saved)?;
+        saved.finished()?;
+        Ok(State { tendon_extension, fascicle_velocity, path_length, yieldings, recruitment })
     }
 
     /// The state as an output, as it was after the tick that left it: force, length, velocity.
@@ -204,18 +231,20 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let travel = self.contraction.lengthening(state.fascicle_velocity);
         let (middle, _) = self.domain.fascicle_length.clip(length + travel * S::HALF);
 
-        let excitations = self.fibers.each_ref().map(|fiber| &fiber.excitation);
-        let recruited = self.recruitment.advance(
-            excitations,
-            &mut state.effective_activation,
-            &mut state.fibers,
-            &state.activations,
-            &input,
-            middle,
-        );
+        let (inside, _) = self.domain.filaments.clip(middle);
+        let reciprocal = inside.reciprocal();
+
         let targets =
             self.fibers.each_ref().map(|fiber| fiber.yielding.target(state.fascicle_velocity));
-        let contractile = self.contractile(state, &recruited, &targets, length, middle, travel);
+        let mut yieldings = [[S::ONE; 2]; N];
+        for (((both, fiber), kept), target) in
+            yieldings.iter_mut().zip(&self.fibers).zip(state.yieldings).zip(targets)
+        {
+            *both = [S::of(kept), S::of(fiber.yielding.advance(kept, target))];
+        }
+        let moment = Moment { input, fascicle_length: middle, travel, reciprocal, yieldings };
+        let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, &moment);
+        let contractile = self.contractile(&recruited, length, middle, inside, reciprocal, travel);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
         let extension =
@@ -234,9 +263,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             state.tendon_extension + stretch - self.contraction.lengthening(travel);
         status |= self.confine(state, middle);
 
-        for ((fiber, kept), before) in self.fibers.iter().zip(&mut state.fibers).zip(targets) {
+        for ((fiber, kept), before) in self.fibers.iter().zip(&mut state.yieldings).zip(targets) {
             let mean = (before + fiber.yielding.target(state.fascicle_velocity)) * S::HALF;
-            kept.yielding = fiber.yielding.advance(kept.yielding, mean);
+            *kept = fiber.yielding.advance(*kept, mean);
         }
         let tendon_pull = tendon.pull(state.tendon_extension);
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
@@ -272,42 +301,25 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status
     }
 
-    /// The contractile element during the tick that starts in `state`, whose fascicles are at
-    /// `start` then, at `middle` half way, and travel by `travel` (all L_ce0). Advances sag.
+    /// The contractile element during a tick for which types are `recruited`, whose fascicles are at
+    /// `start` when it starts, at `middle` half way (`inside` where the filaments' equations hold, of
+    /// which the reciprocal is given), and travel by `travel` (all L_ce0).
     fn contractile(
         &self,
-        state: &mut State<S, R, N>,
         recruited: &[Recruited<S>; N],
-        yielding_targets: &[S; N],
         start: S,
         middle: S,
+        inside: S,
+        reciprocal: S,
         travel: S,
     ) -> Contractile<'_, S, N> {
-        let (inside, _) = self.domain.filaments.clip(middle);
-        let reciprocal = inside.reciprocal();
         let logarithm = inside.ln();
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
         let mut gains = [Course::constant(S::ZERO); N];
         let mut compressed = Course::constant(S::ZERO);
-        let states = state.fibers.iter_mut().zip(&mut state.activations);
-        for ((((gain, fiber), (kept, foreseen)), unit), target) in
-            gains.iter_mut().zip(&self.fibers).zip(states).zip(recruited).zip(yielding_targets)
-        {
-            let sag = fiber.sag.advance(kept.sag, unit.firing);
-            let yielding = fiber.yielding.advance(kept.yielding, *target);
-            let before = S::of(kept.yielding) * S::of(kept.sag);
-            let after = S::of(yielding) * S::of(sag);
-            let modulation = (before + after) * S::HALF;
-            kept.sag = sag;
-
-            let (activation, activation_change) = fiber.activation.at(reciprocal).at(
-                unit.frequency.middle * modulation,
-                unit.frequency.change * modulation + unit.frequency.middle * (after - before),
-                travel,
-            );
-            *foreseen = (activation + activation_change).max(S::ZERO).min(S::ONE);
-
+        for ((gain, fiber), unit) in gains.iter_mut().zip(&self.fibers).zip(recruited) {
+            let Course { middle: activation, change: activation_change } = unit.activation;
             let (length_factor, length_slope) = fiber.force_length.at(logarithm, reciprocal);
             let active = activation * length_factor;
             let active_change =

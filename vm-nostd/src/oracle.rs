@@ -262,10 +262,10 @@ fn activation_by_frequency_is_the_papers() {
                 let at_fixed = fixed.at(q(l).reciprocal()).at(q(f), Fixed::ZERO, Fixed::ZERO);
                 let at32 = a32.at(1.0 / l as f32).at(f as f32, 0.0, 0.0);
                 let at64 = a64.at(1.0 / l).at(f, 0.0, 0.0);
-                value.see(at32.0, at_fixed.0, at64.0, exact(f, l));
+                value.see(at32.middle, at_fixed.middle, at64.middle, exact(f, l));
                 if f > 0.18 && l < longest - 1e-3 {
                     // Along a direction in frequency and length together.
-                    let change = a64.at(1.0 / l).at(f, 0.7, 0.2).1;
+                    let change = a64.at(1.0 / l).at(f, 0.7, 0.2).change;
                     let by_difference = slope(|s| exact(f + 0.7 * s, l + 0.2 * s), 0.0);
                     assert!((change - by_difference).abs() < 1e-4, "{change} {by_difference}");
                 }

@@ -35,6 +35,9 @@ pub struct FiberType {
     pub activation: ActivationParams,
     /// Rise and fall of excitation.
     pub excitation: ExcitationParams,
+    /// Time constant of effective length T_L, s, in the mode that has one; 5e-5 to 0.01.
+    #[doc(alias = "TL")]
+    pub effective_length_time: f64,
     /// Sag, of fast types.
     pub sag: Option<SagParams>,
     /// Yield, of slow types.
@@ -51,6 +54,7 @@ impl FiberType {
         self.force_velocity.validate()?;
         self.activation.validate()?;
         self.excitation.validate()?;
+        within("effective_length_time", self.effective_length_time, 5e-5, 0.01)?;
         self.sag.as_ref().map_or(Ok(()), SagParams::validate)?;
         self.yielding.as_ref().map_or(Ok(()), YieldParams::validate)
     }

@@ -55,6 +55,7 @@ pub mod paper_table_1 {
             fall: ms(47.0),
             fall_per_activation: ms(25.2),
         },
+        effective_length_time: ms(0.088),
         sag: None,
         yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
@@ -79,6 +80,7 @@ pub mod paper_table_1 {
             fall: ms(28.2),
             fall_per_activation: ms(15.1),
         },
+        effective_length_time: ms(0.088),
         sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };
@@ -126,6 +128,7 @@ pub mod human_vm4 {
             fall: ms(94.06666666666666),
             fall_per_activation: ms(50.43333333333333),
         },
+        effective_length_time: ms(0.088),
         sag: None,
         yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
@@ -150,6 +153,7 @@ pub mod human_vm4 {
             fall: ms(47.03333333333334),
             fall_per_activation: ms(25.21666666666667),
         },
+        effective_length_time: ms(0.088),
         sag: None,
         yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
@@ -178,6 +182,7 @@ pub mod human_vm4 {
             fall: ms(28.22),
             fall_per_activation: ms(15.13),
         },
+        effective_length_time: ms(0.088),
         sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };
@@ -221,6 +226,7 @@ pub mod feline_vm4 {
             fall: ms(66.4),
             fall_per_activation: ms(35.6),
         },
+        effective_length_time: ms(0.088),
         sag: None,
         yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
@@ -245,6 +251,7 @@ pub mod feline_vm4 {
             fall: ms(28.22),
             fall_per_activation: ms(15.13),
         },
+        effective_length_time: ms(0.088),
         sag: None,
         yielding: Some(YieldParams { depth: 0.35, velocity: 0.1, time_constant: ms(200.0) }),
     };
@@ -269,6 +276,7 @@ pub mod feline_vm4 {
             fall: ms(16.6),
             fall_per_activation: ms(8.9),
         },
+        effective_length_time: ms(0.088),
         sag: Some(SagParams { resting_level: 1.76, firing_level: 0.96, time_constant: ms(43.0) }),
         yielding: None,
     };

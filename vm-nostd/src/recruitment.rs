@@ -1,17 +1,26 @@
 //! How activation becomes recruitment; one file per mode.
 
+mod acting_length;
 mod continuous;
+mod discrete;
 mod fes;
+mod firing;
+mod lumped;
+mod motor_units;
 
+pub use acting_length::{ActingLength, EffectiveLength, FascicleLength};
 pub use continuous::NaturalContinuous;
+pub use discrete::NaturalDiscrete;
 pub use fes::IntramuscularFes;
+pub use motor_units::{MotorUnits, UnitSizes};
 
+use crate::activation::ActivationCurve;
 use crate::domain::Range;
-use crate::excitation::Excitation;
-use crate::muscle::Input;
+use crate::error::ParameterError;
+use crate::muscle::{Fiber, Input};
 use crate::params::MuscleParams;
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::FiberState;
+use crate::state::{RestoreError, Saved};
 use crate::time_step::TimeStep;
 use core::fmt::Debug;
 
@@ -19,8 +28,22 @@ use core::fmt::Debug;
 pub trait Recruitment<S: Scalar, const N: usize>:
     Sealed + Copy + Debug + PartialEq + 'static
 {
+    /// What there is to say of a muscle in this mode besides its parameters.
+    type Units;
     #[doc(hidden)]
-    type Coefficients: RecruitmentTick<S, N>;
+    type State: RecruitmentState<S>;
+    #[doc(hidden)]
+    type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State>;
+}
+
+/// What of a mode changes from tick to tick.
+#[doc(hidden)]
+pub trait RecruitmentState<S: Scalar>: Copy + Debug + PartialEq {
+    /// How many words it is saved in.
+    const WORDS: usize;
+
+    /// Its bits, always in the same order.
+    fn words(&self) -> impl Iterator<Item = S::Bits>;
 }
 
 /// What the modes do differently in a tick.
@@ -31,22 +54,70 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     /// Whether the force of the filaments may jump where a tick begins.
     const FORCE_JUMPS: bool;
 
-    fn new(params: &MuscleParams<N>, step: TimeStep) -> Self;
+    type Units;
+    type State;
 
-    /// Where effective activation, and f_int and f_eff of each type, always are.
-    fn ranges(&self) -> (Range<S>, [Range<S>; N]);
+    fn new(
+        params: &MuscleParams<N>,
+        units: &Self::Units,
+        step: TimeStep,
+    ) -> Result<Self, ParameterError>;
 
-    /// Advances effective activation and excitation by one tick, in the middle of which each type
-    /// has an activation (Af) and the fascicles have a length.
+    /// Not recruited, nor ever was.
+    fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State;
+
+    /// The state whose words come next, if every value is one that a tick can leave behind.
+    fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        fibers: &[Fiber<S>; N],
+        saved: &mut Saved<I>,
+    ) -> Result<Self::State, RestoreError>;
+
+    /// Advances recruitment, excitation and sag by one tick.
     fn advance(
         &self,
-        excitations: [&Excitation<S>; N],
-        effective_activation: &mut S::Slow,
-        fibers: &mut [FiberState<S>; N],
-        activations: &[S; N],
-        input: &Input<S>,
-        fascicle_length: S,
+        fibers: &[Fiber<S>; N],
+        state: &mut Self::State,
+        moment: &Moment<S, N>,
     ) -> [Recruited<S>; N];
+}
+
+/// What recruitment depends on during a tick.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct Moment<S: Scalar, const N: usize> {
+    pub(crate) input: Input<S>,
+    /// Fascicle length at the middle, L_ce0.
+    pub(crate) fascicle_length: S,
+    /// How much longer the fascicles become, L_ce0.
+    pub(crate) travel: S,
+    /// 1/L at the middle, L being where the filaments' equations hold.
+    pub(crate) reciprocal: S,
+    /// Y of each type at the tick's start and end.
+    pub(crate) yieldings: [[S; 2]; N],
+}
+
+/// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it is:
+/// Af during the tick, for a frequency (f0.5), Y at start and end, and the curve of its length.
+pub(crate) fn activated<S: Scalar>(
+    fiber: &Fiber<S>,
+    curve: &ActivationCurve<S>,
+    sag: &mut S::Slow,
+    [yielding, yielding_after]: [S; 2],
+    frequency: Course<S>,
+    firing: S,
+    length_change: S,
+) -> Course<S> {
+    let sag_after = fiber.sag.advance(*sag, firing);
+    let before = yielding * S::of(*sag);
+    let after = yielding_after * S::of(sag_after);
+    *sag = sag_after;
+    let modulation = (before + after) * S::HALF;
+    curve.at(
+        frequency.middle * modulation,
+        frequency.change * modulation + frequency.middle * (after - before),
+        length_change,
+    )
 }
 
 /// A quantity during a tick: its value at the middle, and its change from start to end.
@@ -62,6 +133,11 @@ impl<S: Scalar> Course<S> {
         Self { middle: value, change: S::ZERO }
     }
 
+    /// What a share (0..1) with this course will be at the middle of the next tick.
+    pub(crate) fn next_share(&self) -> S {
+        (self.middle + self.change).max(S::ZERO).min(S::ONE)
+    }
+
     /// The value `time` ticks after the middle.
     pub(crate) fn at(&self, time: S) -> S {
         self.middle + self.change * time
@@ -72,12 +148,23 @@ impl<S: Scalar> Course<S> {
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Recruited<S> {
-    /// Frequency that acts on the filaments, f0.5.
-    pub(crate) frequency: Course<S>,
-    /// Share of the tick, 0..1, in which the type counts as firing, for sag.
-    pub(crate) firing: S,
+    /// Af, in the discrete modes summed over the units by cross section.
+    pub(crate) activation: Course<S>,
     /// Share of the muscle's force that the type's filaments add, at Af FL FV = 1.
     pub(crate) weight: Course<S>,
     /// The same for the compression of its thick filaments.
     pub(crate) compression_weight: Course<S>,
+}
+
+impl<S: Scalar> Recruited<S> {
+    pub(crate) const NOT: Self = Self {
+        activation: Course { middle: S::ZERO, change: S::ZERO },
+        weight: Course { middle: S::ZERO, change: S::ZERO },
+        compression_weight: Course { middle: S::ZERO, change: S::ZERO },
+    };
+}
+
+/// What a share may be.
+pub(crate) fn share<S: Scalar>() -> Range<S> {
+    Range { least: S::ZERO, most: S::ONE }
 }

@@ -12,8 +12,9 @@ use cortex_m_rt::entry;
 use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
 use vm_nostd::{
-    Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Output, ParameterError, Recruitment,
-    Scalar, State, TimeStep,
+    ActingLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits, Muscle,
+    NaturalContinuous, NaturalDiscrete, Output, ParameterError, Recruitment, Scalar, State,
+    TimeStep, UnitSizes,
 };
 
 static INPUTS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/bench_inputs.bin"));
@@ -37,6 +38,8 @@ step!(step_continuous_f32, f32, NaturalContinuous);
 step!(step_fes_f32, f32, IntramuscularFes);
 step!(step_continuous_fixed, Fixed, NaturalContinuous);
 step!(step_fes_fixed, Fixed, IntramuscularFes);
+step!(step_discrete_2_f32, f32, NaturalDiscrete<FascicleLength, 2>);
+step!(step_discrete_60_f32, f32, NaturalDiscrete<FascicleLength, 60>);
 
 /// A tick of the literal port, under a name of its own for each mode and precision.
 macro_rules! literal {
@@ -110,18 +113,38 @@ fn drive_all() -> Result<(), ParameterError> {
     literal(5, literal_fes_f32)?;
     literal(6, literal_continuous_f64)?;
     literal(7, literal_fes_f64)?;
-    drive(8, |_| Ok(()), |(), input| kernels_f32(input))
+    drive(8, |_| Ok(()), |(), input| kernels_f32(input))?;
+    model_of_units(9, 1, step_discrete_2_f32)?;
+    model_of_units(10, 30, step_discrete_60_f32)
 }
 
 /// What steps a muscle.
 type Step<S, R> = fn(&Muscle<S, R, 2>, &mut State<S, R, 2>, Input<S>) -> Output<S>;
 
 /// Drives the model.
-fn model<S: Scalar, R: Recruitment<S, 2>>(
+fn model<S: Scalar, R: Recruitment<S, 2, Units = ()>>(
     case: u32,
     step: Step<S, R>,
 ) -> Result<(), ParameterError> {
-    let muscle = Muscle::<S, R, 2>::build(&MUSCLE, TimeStep::MILLISECOND)?;
+    model_with(case, &(), step)
+}
+
+/// Drives the model with so many motor units of each type.
+fn model_of_units<S: Scalar, A: ActingLength<S>, const UNITS: usize>(
+    case: u32,
+    count: usize,
+    step: Step<S, NaturalDiscrete<A, UNITS>>,
+) -> Result<(), ParameterError> {
+    let units = MotorUnits::new(&MUSCLE, [UnitSizes::Default(count); 2])?;
+    model_with(case, &units, step)
+}
+
+fn model_with<S: Scalar, R: Recruitment<S, 2>>(
+    case: u32,
+    units: &R::Units,
+    step: Step<S, R>,
+) -> Result<(), ParameterError> {
+    let muscle = Muscle::<S, R, 2>::build_with_units(&MUSCLE, units, TimeStep::MILLISECOND)?;
     drive(
         case,
         |path| muscle.rest(S::path_length(path.into())),

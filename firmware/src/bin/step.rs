@@ -7,8 +7,9 @@ use core::hint::black_box;
 use cortex_m_rt::entry;
 use firmware::{Arithmetic, Inputs, MUSCLE, Record, Rig, Scenario, end};
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Output,
-    Recruitment, Scalar, State, TimeStep,
+    ContinuousMuscle, EffectiveLength, FesMuscle, Fixed, Input, IntramuscularFes, MotorUnits,
+    Muscle, NaturalContinuous, NaturalDiscrete, Output, Recruitment, Scalar, State, TimeStep,
+    UnitSizes,
 };
 
 /// Inputs and results that the optimiser can tell nothing about.
@@ -48,12 +49,27 @@ fn step_fes_fixed(
     muscle.step(state, input)
 }
 
+/// A mode of motor units, the one with most state.
+type Discrete = NaturalDiscrete<EffectiveLength, 8>;
+
+/// A tick in fixed point, by itself: what it calls is read from the image.
+#[inline(never)]
+fn step_discrete_fixed(
+    muscle: &Muscle<Fixed, Discrete, 2>,
+    state: &mut State<Fixed, Discrete, 2>,
+    input: Input<Fixed>,
+) -> Output<Fixed> {
+    muscle.step(state, input)
+}
+
 /// Builds, rests, saves and restores a muscle.
-fn muscle_at_rest<S: Arithmetic, R: Recruitment<S, 2>>() -> Option<(Muscle<S, R, 2>, State<S, R, 2>)>
-{
-    let muscle = Muscle::<S, R, 2>::build(&black_box(MUSCLE), TimeStep::MILLISECOND).ok()?;
+fn muscle_at_rest<S: Arithmetic, R: Recruitment<S, 2>>(
+    units: &R::Units,
+) -> Option<(Muscle<S, R, 2>, State<S, R, 2>)> {
+    let params = black_box(MUSCLE);
+    let muscle = Muscle::<S, R, 2>::build_with_units(&params, units, TimeStep::MILLISECOND).ok()?;
     let state = muscle.rest(S::path_length(black_box(Scenario::RESTING_PATH).into())).ok()?;
-    let mut words = [0; 32];
+    let mut words = [0; 128];
     words.iter_mut().zip(state.words()).for_each(|(place, word)| *place = word);
     let length = State::<S, R, 2>::WORDS;
     let state = muscle.restore(black_box(words).into_iter().take(length)).ok()?;
@@ -61,15 +77,22 @@ fn muscle_at_rest<S: Arithmetic, R: Recruitment<S, 2>>() -> Option<(Muscle<S, R,
 }
 
 fn run() -> Option<()> {
-    let (continuous, mut continuous_state) = muscle_at_rest::<Fixed, NaturalContinuous>()?;
-    let (fes, mut fes_state) = muscle_at_rest::<Fixed, IntramuscularFes>()?;
-    muscle_at_rest::<f32, IntramuscularFes>()?;
+    let (continuous, mut continuous_state) = muscle_at_rest::<Fixed, NaturalContinuous>(&())?;
+    let (fes, mut fes_state) = muscle_at_rest::<Fixed, IntramuscularFes>(&())?;
+    let sizes = [UnitSizes::Default(3), UnitSizes::Listed(black_box(&[1.0, 2.0]))];
+    let units = MotorUnits::new(&black_box(MUSCLE), sizes).ok()?;
+    let (discrete, mut discrete_state) = muscle_at_rest::<Fixed, Discrete>(&units)?;
+    muscle_at_rest::<f32, IntramuscularFes>(&())?;
+    let (float, mut float_state) = muscle_at_rest::<f32, Discrete>(&units)?;
     let mut rig = Rig::<f32>::at_rest(black_box(Scenario::RESTING_PATH)).ok()?;
     loop {
         rig.tick(&mut Anything, &mut Anything);
         let [natural, stimulated] = Anything.inputs(0);
         black_box(step_continuous_fixed(&continuous, &mut continuous_state, natural));
         black_box(step_fes_fixed(&fes, &mut fes_state, stimulated));
+        black_box(step_discrete_fixed(&discrete, &mut discrete_state, natural));
+        let [natural, _] = Anything.inputs(0);
+        black_box(float.step(&mut float_state, natural));
     }
 }
 

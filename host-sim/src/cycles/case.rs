@@ -7,7 +7,7 @@ use crate::reference::Mode;
 use crate::scenario::{self, Scenario, paper_muscle};
 use literal_port::{Drive, LiteralMuscle, Real, STABLE_STEPS};
 use rayon::prelude::*;
-use vm_nostd::{NaturalContinuous, State};
+use vm_nostd::{FascicleLength, NaturalContinuous, NaturalDiscrete, State};
 
 /// What a case computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,9 +16,14 @@ pub enum Subject {
     Model(Mode, Arithmetic),
     /// A tick of the literal port, in single or double precision.
     Literal(Mode, Arithmetic),
+    /// A tick of the model in `f32` with so many motor units of each of two types.
+    Discrete(usize),
     /// The functions of libm that one evaluation of the equations calls.
     Kernels,
 }
+
+/// The mode of a discrete case.
+type DiscreteMode<const UNITS: usize> = NaturalDiscrete<FascicleLength, UNITS>;
 
 /// One row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,10 +39,10 @@ pub struct Case {
 }
 
 /// Every case, in the order of the bench.
-pub const CASES: [Case; 9] = {
+pub const CASES: [Case; 11] = {
     use Arithmetic::{F32, F64, Fixed};
     use Mode::{Continuous, Fes};
-    use Subject::{Kernels, Literal, Model};
+    use Subject::{Discrete, Kernels, Literal, Model};
     const fn case(
         name: &'static str,
         function: &'static str,
@@ -58,6 +63,8 @@ pub const CASES: [Case; 9] = {
         case("literal-continuous-f64", "literal_continuous_f64", Literal(Continuous, F64), few),
         case("literal-fes-f64", "literal_fes_f64", Literal(Fes, F64), few),
         case("kernels-f32", "kernels_f32", Kernels, some),
+        case("discrete-1+1-f32", "step_discrete_2_f32", Discrete(1), some),
+        case("discrete-30+30-f32", "step_discrete_60_f32", Discrete(30), some),
     ]
 };
 
@@ -76,7 +83,7 @@ impl Case {
     pub fn mode(&self) -> Option<Mode> {
         match self.subject {
             Subject::Model(mode, _) | Subject::Literal(mode, _) => Some(mode),
-            Subject::Kernels => None,
+            Subject::Kernels | Subject::Discrete(_) => None,
         }
     }
 
@@ -84,7 +91,7 @@ impl Case {
     pub fn arithmetic(&self) -> Arithmetic {
         match self.subject {
             Subject::Model(_, arithmetic) | Subject::Literal(_, arithmetic) => arithmetic,
-            Subject::Kernels => Arithmetic::F32,
+            Subject::Kernels | Subject::Discrete(_) => Arithmetic::F32,
         }
     }
 
@@ -97,6 +104,8 @@ impl Case {
     pub fn state_bytes(&self) -> u32 {
         let bytes = match (self.subject, self.arithmetic()) {
             (Subject::Kernels, _) => 0,
+            (Subject::Discrete(1), _) => size_of::<State<f32, DiscreteMode<2>, 2>>(),
+            (Subject::Discrete(_), _) => size_of::<State<f32, DiscreteMode<60>, 2>>(),
             (Subject::Model(..), Arithmetic::F64) => size_of::<State<f64, NaturalContinuous, 2>>(),
             (Subject::Model(..), Arithmetic::Fixed) => {
                 size_of::<State<vm_nostd::Fixed, NaturalContinuous, 2>>()
@@ -195,6 +204,7 @@ fn literal_forces<R: Real + Into<f64>>(mode: Mode, steps: u32, scenario: &Scenar
         let drive = match mode {
             Mode::Continuous => Drive::Natural(activation),
             Mode::Fes => Drive::Fes(activation, frequency),
+            Mode::Discrete | Mode::DiscreteEffectiveLength => unreachable!("no such baseline"),
         };
         muscle.tick(drive, path).into()
     }));

@@ -74,15 +74,20 @@ pub struct FiberType {
     pub Tf3: f64,
     /// s.
     pub Tf4: f64,
+    /// s; of effective length.
+    pub TL: f64,
     pub sag: Option<Sag>,
     pub yielding: Option<Yielding>,
 }
 
 /// A fibre type and its share of the muscle's cross section.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fiber {
     /// Fractional physiological cross-sectional area, 0..1; the shares of a muscle add to 1.
     pub fraction: f64,
+    /// Shares of the type's motor units in its cross section, in order of recruitment; they add to 1.
+    /// Only the discrete modes use them.
+    pub units: Vec<f64>,
     /// Coefficients of the type.
     pub fiber_type: FiberType,
 }

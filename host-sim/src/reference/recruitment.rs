@@ -5,6 +5,10 @@ use super::muscle::Muscle;
 /// A recruitment mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
+    /// Natural discrete recruitment: motor units one by one.
+    Discrete,
+    /// The same with an effective length of each unit (VM 3.x).
+    DiscreteEffectiveLength,
     /// Natural continuous recruitment: one lumped unit per type.
     Continuous,
     /// Intramuscular FES: every type recruited alike, at one stimulation frequency.
@@ -21,30 +25,68 @@ pub fn effective_activation_rate(u: f64, u_eff: f64) -> f64 {
 }
 
 /// Weights W_i of the types: the excess of U_eff over each threshold, over the sum of all.
-pub fn weights(thresholds: &[f64], u_eff: f64) -> Vec<f64> {
-    let excess: Vec<f64> = thresholds
+pub fn weights(units: &[Unit], u_eff: f64) -> Vec<f64> {
+    let excess: Vec<f64> = units
         .iter()
-        .map(|&threshold| if u_eff >= threshold { u_eff - threshold } else { 0.0 })
+        .map(|unit| if u_eff >= unit.threshold { u_eff - unit.threshold } else { 0.0 })
         .collect();
     let sum: f64 = excess.iter().sum();
     excess.iter().map(|&e| if sum > 0.0 { e / sum } else { 0.0 }).collect()
 }
 
-/// f_env of each type, in f0.5, for raw activation `u` and stimulation frequency `f_stim` (pps).
-pub fn firing_frequencies(muscle: &Muscle, mode: Mode, u: f64, f_stim: f64) -> Vec<f64> {
-    let thresholds = muscle.recruitment_thresholds();
-    muscle
-        .fibers
+/// What is recruited as one: a fibre type, or one of its motor units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Index of its fibre type.
+    pub fiber: usize,
+    /// Its share of the muscle's cross section.
+    pub pcsa: f64,
+    /// Uth: activation from which on it is recruited.
+    pub threshold: f64,
+}
+
+/// The units of a muscle, in order of recruitment.
+///
+/// Discrete, Uth_j = max(0.001, U_r times the cross section up to and with unit j).
+pub fn units(muscle: &Muscle, mode: Mode) -> Vec<Unit> {
+    let fibers = muscle.fibers.iter().enumerate();
+    match mode {
+        Mode::Continuous | Mode::Fes => fibers
+            .zip(muscle.recruitment_thresholds())
+            .map(|((fiber, f), threshold)| Unit { fiber, pcsa: f.fraction, threshold })
+            .collect(),
+        Mode::Discrete | Mode::DiscreteEffectiveLength => fibers
+            .flat_map(|(fiber, f)| f.units.iter().map(move |share| (fiber, share * f.fraction)))
+            .scan(0.0, |cumulative, (fiber, pcsa)| {
+                *cumulative += pcsa;
+                let threshold = (muscle.U_r * *cumulative).max(0.001);
+                Some(Unit { fiber, pcsa, threshold })
+            })
+            .collect(),
+    }
+}
+
+/// f_env of each unit, in f0.5, for raw activation `u` and stimulation frequency `f_stim` (pps).
+pub fn firing_frequencies(
+    muscle: &Muscle,
+    mode: Mode,
+    units: &[Unit],
+    u: f64,
+    f_stim: f64,
+) -> Vec<f64> {
+    units
         .iter()
-        .zip(thresholds)
-        .map(|(fiber, threshold)| {
-            let t = &fiber.fiber_type;
-            match mode {
-                Mode::Continuous if u >= threshold => {
-                    t.fmin + (t.fmax - t.fmin) * (u - threshold) / (1.0 - threshold)
-                }
-                Mode::Continuous => 0.0,
-                Mode::Fes => f_stim / t.f05,
+        .map(|unit| {
+            let t = &muscle.fibers[unit.fiber].fiber_type;
+            if mode == Mode::Fes {
+                f_stim / t.f05
+            } else if u < unit.threshold {
+                0.0
+            } else if unit.threshold >= 1.0 {
+                // Recruited at full activation, where all fire at fmax.
+                t.fmax
+            } else {
+                t.fmin + (t.fmax - t.fmin) * (u - unit.threshold) / (1.0 - unit.threshold)
             }
         })
         .collect()

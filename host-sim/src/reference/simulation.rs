@@ -4,7 +4,7 @@
 
 use super::elements as element;
 use super::muscle::Muscle;
-use super::recruitment::{self, Mode};
+use super::recruitment::{self, Mode, Unit};
 use ode_solvers::dop_shared::{IntegrationError, OutputType, System};
 use ode_solvers::{DVector, Dopri5};
 
@@ -45,22 +45,26 @@ const TOLERANCE: f64 = 1e-9;
 /// Steps that one tick may take before the integrator gives up.
 const MOST_STEPS: u32 = 200_000;
 
-// Layout of the state vector: L, V, U_eff, then four per type.
+// Layout of the state vector: L, V, U_eff, then Y of each type, then four per unit.
 const L: usize = 0;
 const V: usize = 1;
 const U_EFF: usize = 2;
 const FIRST_TYPE: usize = 3;
-const PER_TYPE: usize = 4;
+const PER_UNIT: usize = 4;
 const F_INT: usize = 0;
 const F_EFF: usize = 1;
-const Y: usize = 2;
-const S: usize = 3;
+const S: usize = 2;
+const L_EFF: usize = 3;
+
+/// L_eff at rest, L_ce0.
+const RESTING_L_EFF: f64 = 1.0;
 
 /// A muscle being simulated.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     muscle: Muscle,
     mode: Mode,
+    units: Vec<Unit>,
     time_step: f64,
     state: DVector<f64>,
     path_length: f64,
@@ -71,14 +75,19 @@ pub struct Simulation {
 impl Simulation {
     /// A muscle at rest at `path_length` (m), to be stepped by `time_step` (s).
     pub fn at_rest(muscle: Muscle, mode: Mode, time_step: f64, path_length: f64) -> Self {
-        let mut state = DVector::zeros(FIRST_TYPE + PER_TYPE * muscle.fibers.len());
+        let units = recruitment::units(&muscle, mode);
+        let first_unit = FIRST_TYPE + muscle.fibers.len();
+        let mut state = DVector::zeros(first_unit + PER_UNIT * units.len());
         state[L] = resting_length(&muscle, path_length);
-        for (i, fiber) in muscle.fibers.iter().enumerate() {
-            let at = FIRST_TYPE + PER_TYPE * i;
-            state[at + Y] = 1.0;
-            state[at + S] = fiber.fiber_type.sag.map_or(1.0, |sag| sag.aS1);
+        for i in 0..muscle.fibers.len() {
+            state[FIRST_TYPE + i] = 1.0;
         }
-        Self { muscle, mode, time_step, state, path_length, first_step: 0.0, tick: 0 }
+        for (j, unit) in units.iter().enumerate() {
+            let at = first_unit + PER_UNIT * j;
+            state[at + S] = muscle.fibers[unit.fiber].fiber_type.sag.map_or(1.0, |sag| sag.aS1);
+            state[at + L_EFF] = RESTING_L_EFF;
+        }
+        Self { muscle, mode, units, time_step, state, path_length, first_step: 0.0, tick: 0 }
     }
 
     /// The state as a sample.
@@ -103,10 +112,11 @@ impl Simulation {
             mode: self.mode,
             l_max: self.muscle.maximum_fascicle_length(),
             acceleration: self.muscle.f0() / (0.5 * self.muscle.mass * self.muscle.L_ce0),
-            thresholds: self.muscle.recruitment_thresholds(),
+            units: &self.units,
             f_env: recruitment::firing_frequencies(
                 &self.muscle,
                 self.mode,
+                &self.units,
                 u,
                 input.stimulation_frequency,
             ),
@@ -174,7 +184,7 @@ struct Tick<'a> {
     mode: Mode,
     l_max: f64,
     acceleration: f64,
-    thresholds: Vec<f64>,
+    units: &'a [Unit],
     f_env: Vec<f64>,
     u: f64,
     path_start: f64,
@@ -186,42 +196,57 @@ impl System<f64, DVector<f64>> for Tick<'_> {
         let m = self.muscle;
         let e = &m.elements;
         let (l, v, u_eff) = (y[L], y[V], y[U_EFF]);
-        let weights = recruitment::weights(&self.thresholds, u_eff);
+        let weights = recruitment::weights(self.units, u_eff);
+        let first_unit = FIRST_TYPE + m.fibers.len();
         let mut force_of_filaments = 0.0;
         let mut force_of_compression = 0.0;
         for (i, fiber) in m.fibers.iter().enumerate() {
-            let t = &fiber.fiber_type;
-            let at = FIRST_TYPE + PER_TYPE * i;
+            dy[FIRST_TYPE + i] = element::yielding_rate(&fiber.fiber_type, y[FIRST_TYPE + i], v);
+        }
+        for (j, unit) in self.units.iter().enumerate() {
+            let t = &m.fibers[unit.fiber].fiber_type;
+            let at = first_unit + PER_UNIT * j;
             let (f_int, f_eff) = (y[at + F_INT], y[at + F_EFF]);
-            let f_env = self.f_env[i];
+            let f_env = self.f_env[j];
             let rising = f_int >= f_eff;
             // The frequency that acts on the filaments, what drives the chain of excitation,
-            // whether the type sags, and the weights of the two kinds of force.
+            // whether the unit sags, and the weights of the two kinds of force.
             let (f, drive, sagging, weight, compression_weight) = match self.mode {
                 Mode::Continuous => {
-                    let weight = u_eff * weights[i];
+                    let weight = u_eff * weights[j];
                     (f_eff, f_env, f_eff >= 0.1, weight, weight)
                 }
-                Mode::Fes => (f_env, self.u, f_env > 0.1, f_eff * fiber.fraction, fiber.fraction),
+                Mode::Fes => (f_env, self.u, f_env > 0.1, f_eff * unit.pcsa, unit.pcsa),
+                Mode::Discrete | Mode::DiscreteEffectiveLength => {
+                    (f_eff, f_env, f_eff >= 0.1, unit.pcsa, unit.pcsa)
+                }
             };
-            let af = element::activation_frequency(t, f, l, y[at + Y], y[at + S]);
+            let acting_length =
+                if self.mode == Mode::DiscreteEffectiveLength { y[at + L_EFF] } else { l };
+            let yielding = y[FIRST_TYPE + unit.fiber];
+            let af = element::activation_frequency(t, f, acting_length, yielding, y[at + S]);
             let slowing = match self.mode {
-                Mode::Continuous => af,
                 Mode::Fes => f64::from(u8::from(self.u > 0.0)),
+                _ => af,
             };
             let time_constant = element::excitation_time(t, rising, l, f_env, slowing);
             dy[at + F_INT] = (drive - f_int) / time_constant;
             dy[at + F_EFF] = (f_int - f_eff) / time_constant;
-            dy[at + Y] = element::yielding_rate(t, y[at + Y], v);
             dy[at + S] = element::sag_rate(t, y[at + S], sagging);
+            dy[at + L_EFF] = match self.mode {
+                Mode::DiscreteEffectiveLength => {
+                    element::effective_length_rate(t, l, y[at + L_EFF], af)
+                }
+                _ => 0.0,
+            };
             force_of_filaments +=
                 weight * af * element::force_length(t, l) * element::force_velocity(t, l, v);
             force_of_compression += compression_weight * af * element::compression(e, l);
         }
         let passive = element::parallel_elastic(e, l, self.l_max, v) + force_of_compression;
         let contractile = match self.mode {
-            Mode::Continuous => passive + force_of_filaments,
             Mode::Fes => passive.max(0.0) + force_of_filaments,
+            _ => passive + force_of_filaments,
         }
         .max(0.0);
         let path = self.path_start + self.path_rate * time;

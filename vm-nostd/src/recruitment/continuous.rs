@@ -7,15 +7,17 @@
 //! The paper prints the sum only up to i; its own results, and its authors' program, sum over all
 //! recruited types, so that the weights add to 1.
 
-use super::{Course, Recruited, Recruitment, RecruitmentTick};
+use super::firing::Firing;
+use super::lumped::LumpedState;
+use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
 use crate::domain::Range;
-use crate::excitation::Excitation;
+use crate::error::ParameterError;
 use crate::lag::Lag;
-use crate::muscle::Input;
+use crate::muscle::Fiber;
 use crate::params::MuscleParams;
 use crate::sag::{SagParams, share_above};
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::FiberState;
+use crate::state::{RestoreError, Saved};
 use crate::time_step::TimeStep;
 
 /// Natural continuous recruitment. The stimulation frequency is not used.
@@ -25,6 +27,8 @@ pub struct NaturalContinuous;
 impl Sealed for NaturalContinuous {}
 
 impl<S: Scalar, const N: usize> Recruitment<S, N> for NaturalContinuous {
+    type Units = ();
+    type State = LumpedState<S, N>;
     type Coefficients = Coefficients<S, N>;
 }
 
@@ -37,36 +41,23 @@ const FALL_TIME: f64 = 0.15;
 pub struct Coefficients<S: Scalar, const N: usize> {
     rise: Lag<S>,
     fall: Lag<S>,
+    /// The frequency from which a type counts as firing, f0.5.
     firing: S,
-    units: [Unit<S>; N],
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Unit<S: Scalar> {
-    /// Uth.
-    threshold: S,
-    /// fmin.
-    minimum_frequency: S,
-    /// (fmax - fmin)/(1 - Uth).
-    frequency_slope: S::Factor,
-}
-
-impl<S: Scalar> Unit<S> {
-    /// f_env: from fmin at the threshold to fmax at U = 1, by raw activation.
-    fn firing_frequency(&self, activation: S) -> S {
-        if activation >= self.threshold {
-            self.minimum_frequency + (activation - self.threshold).scaled(&self.frequency_slope)
-        } else {
-            S::ZERO
-        }
-    }
+    units: [Firing<S>; N],
 }
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = false;
     const FORCE_JUMPS: bool = false;
 
-    fn new(params: &MuscleParams<N>, step: TimeStep) -> Self {
+    type Units = ();
+    type State = LumpedState<S, N>;
+
+    fn new(
+        params: &MuscleParams<N>,
+        (): &Self::Units,
+        step: TimeStep,
+    ) -> Result<Self, ParameterError> {
         let mut before = 0.0;
         let units = params.fibers.map(|fiber| {
             let t = &fiber.fiber_type;
@@ -76,43 +67,43 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 params.recruitment_saturation * before
             };
             before += fiber.fraction;
-            let slope = (t.maximum_frequency - t.minimum_frequency) / (1.0 - threshold);
-            Unit {
-                threshold: S::from_f64(threshold),
-                minimum_frequency: S::from_f64(t.minimum_frequency),
-                frequency_slope: S::factor(slope),
-            }
+            Firing::new(t, threshold)
         });
-        Self {
+        Ok(Self {
             rise: Lag::new(RISE_TIME, step),
             fall: Lag::new(FALL_TIME, step),
             firing: S::from_f64(SagParams::FIRING),
             units,
-        }
+        })
     }
 
-    fn ranges(&self) -> (Range<S>, [Range<S>; N]) {
+    fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
+        LumpedState::at_rest(fibers)
+    }
+
+    fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        fibers: &[Fiber<S>; N],
+        saved: &mut Saved<I>,
+    ) -> Result<Self::State, RestoreError> {
         let frequencies =
-            self.units.map(|unit| Range { least: S::ZERO, most: unit.firing_frequency(S::ONE) });
-        (Range { least: S::ZERO, most: S::ONE }, frequencies)
+            self.units.map(|unit| Range { least: S::ZERO, most: unit.frequency(S::ONE) });
+        LumpedState::restored(fibers, saved, super::share(), frequencies)
     }
 
     fn advance(
         &self,
-        excitations: [&Excitation<S>; N],
-        effective_activation: &mut S::Slow,
-        fibers: &mut [FiberState<S>; N],
-        activations: &[S; N],
-        input: &Input<S>,
-        fascicle_length: S,
+        fibers: &[Fiber<S>; N],
+        state: &mut Self::State,
+        moment: &Moment<S, N>,
     ) -> [Recruited<S>; N] {
-        let activation = input.activation;
-        let start = *effective_activation;
+        let activation = moment.input.activation;
+        let start = state.effective_activation;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
         let lag = if activation >= S::of(start) { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
         let end = lag.at_end(start, activation);
-        *effective_activation = end;
+        state.effective_activation = end;
         let change = S::of(end) - S::of(start);
 
         let (mut sum, mut count) = (S::ZERO, S::ZERO);
@@ -126,45 +117,42 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         let of_sum = |value: S| if sum > S::ZERO { value.ratio(sum) } else { S::ZERO };
         let relative_change = of_sum(change);
 
-        let mut recruited = [Recruited {
-            frequency: Course::constant(S::ZERO),
-            firing: S::ZERO,
-            weight: Course::constant(S::ZERO),
-            compression_weight: Course::constant(S::ZERO),
-        }; N];
-        for ((((result, unit), fiber), excitation), slowing) in
-            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations).zip(activations)
+        let mut recruited = [Recruited::NOT; N];
+        let kept = state.fibers.iter_mut().zip(&mut state.activations);
+        for ((((result, unit), (kept, foreseen)), fiber), yieldings) in
+            recruited.iter_mut().zip(&self.units).zip(kept).zip(fibers).zip(moment.yieldings)
         {
-            let drive = unit.firing_frequency(activation);
-            let before = fiber.effective_frequency;
-            let excited = excitation.advance(
-                (fiber.intermediate_frequency, before),
+            let drive = unit.frequency(activation);
+            let before = kept.effective_frequency;
+            let excited = fiber.excitation.advance(
+                (kept.intermediate_frequency, before),
                 drive,
                 drive,
-                *slowing,
-                fascicle_length,
+                *foreseen,
+                moment.fascicle_length,
             );
-            fiber.intermediate_frequency = excited.intermediate;
-            fiber.effective_frequency = excited.effective;
+            kept.intermediate_frequency = excited.intermediate;
+            kept.effective_frequency = excited.effective;
+            let (start, end) = (S::of(before), S::of(excited.effective));
+            result.activation = activated(
+                fiber,
+                &fiber.activation.at(moment.reciprocal),
+                &mut kept.sag,
+                yieldings,
+                Course { middle: excited.effective_at_middle, change: end - start },
+                share_above(start, end, self.firing),
+                moment.travel,
+            );
+            *foreseen = result.activation.next_share();
 
             // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
-            let weight = if middle >= unit.threshold {
+            if middle >= unit.threshold {
                 let excess = middle - unit.threshold;
                 let value = middle * of_sum(excess);
                 let slope = middle + excess - count * value;
-                Course { middle: value, change: slope * relative_change }
-            } else {
-                Course::constant(S::ZERO)
-            };
-            *result = Recruited {
-                frequency: Course {
-                    middle: excited.effective_at_middle,
-                    change: S::of(excited.effective) - S::of(before),
-                },
-                firing: share_above(S::of(before), S::of(excited.effective), self.firing),
-                weight,
-                compression_weight: weight,
-            };
+                result.weight = Course { middle: value, change: slope * relative_change };
+            }
+            result.compression_weight = result.weight;
         }
         recruited
     }

@@ -5,14 +5,15 @@
 //! driven by U instead and carry the recruitment. Rising Tf = Tf1 L² + Tf2 f_env_i, falling
 //! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
 
-use super::{Course, Recruited, Recruitment, RecruitmentTick};
+use super::lumped::LumpedState;
+use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
 use crate::domain::Range;
-use crate::excitation::Excitation;
-use crate::muscle::Input;
+use crate::error::ParameterError;
+use crate::muscle::Fiber;
 use crate::params::MuscleParams;
 use crate::sag::SagParams;
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::FiberState;
+use crate::state::{RestoreError, Saved};
 use crate::time_step::TimeStep;
 
 /// Intramuscular FES: activation is the strength of the stimulus.
@@ -22,6 +23,8 @@ pub struct IntramuscularFes;
 impl Sealed for IntramuscularFes {}
 
 impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
+    type Units = ();
+    type State = LumpedState<S, N>;
     type Coefficients = Coefficients<S, N>;
 }
 
@@ -43,56 +46,74 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     /// Af follows the stimulation frequency at once.
     const FORCE_JUMPS: bool = true;
 
-    fn new(params: &MuscleParams<N>, _step: TimeStep) -> Self {
-        Self {
+    type Units = ();
+    type State = LumpedState<S, N>;
+
+    fn new(
+        params: &MuscleParams<N>,
+        (): &Self::Units,
+        _step: TimeStep,
+    ) -> Result<Self, ParameterError> {
+        Ok(Self {
             firing: S::from_f64(SagParams::FIRING),
             units: params.fibers.map(|fiber| Unit {
                 fraction: S::from_f64(fiber.fraction),
                 per_half_force_frequency: S::per_pps(1.0 / fiber.fiber_type.half_force_frequency),
             }),
-        }
+        })
     }
 
-    fn ranges(&self) -> (Range<S>, [Range<S>; N]) {
+    fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
+        LumpedState::at_rest(fibers)
+    }
+
+    fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        fibers: &[Fiber<S>; N],
+        saved: &mut Saved<I>,
+    ) -> Result<Self::State, RestoreError> {
         // The two lags carry the recruitment.
-        let recruitment = Range { least: S::ZERO, most: S::ONE };
-        (Range { least: S::ZERO, most: S::ZERO }, [recruitment; N])
+        let none = Range { least: S::ZERO, most: S::ZERO };
+        LumpedState::restored(fibers, saved, none, [super::share(); N])
     }
 
     fn advance(
         &self,
-        excitations: [&Excitation<S>; N],
-        _effective_activation: &mut S::Slow,
-        fibers: &mut [FiberState<S>; N],
-        _activations: &[S; N],
-        input: &Input<S>,
-        fascicle_length: S,
+        fibers: &[Fiber<S>; N],
+        state: &mut Self::State,
+        moment: &Moment<S, N>,
     ) -> [Recruited<S>; N] {
+        let input = &moment.input;
         let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
-        let mut recruited = [Recruited {
-            frequency: Course::constant(S::ZERO),
-            firing: S::ZERO,
-            weight: Course::constant(S::ZERO),
-            compression_weight: Course::constant(S::ZERO),
-        }; N];
-        for (((result, unit), fiber), excitation) in
-            recruited.iter_mut().zip(&self.units).zip(fibers).zip(excitations)
+        let mut recruited = [Recruited::NOT; N];
+        let kept = state.fibers.iter_mut().zip(&mut state.activations);
+        for ((((result, unit), (kept, foreseen)), fiber), yieldings) in
+            recruited.iter_mut().zip(&self.units).zip(kept).zip(fibers).zip(moment.yieldings)
         {
             let frequency =
                 S::of_frequency(input.stimulation_frequency, &unit.per_half_force_frequency);
-            let before = fiber.effective_frequency;
-            let excited = excitation.advance(
-                (fiber.intermediate_frequency, before),
+            let before = kept.effective_frequency;
+            let excited = fiber.excitation.advance(
+                (kept.intermediate_frequency, before),
                 input.activation,
                 frequency,
                 slowing,
-                fascicle_length,
+                moment.fascicle_length,
             );
-            fiber.intermediate_frequency = excited.intermediate;
-            fiber.effective_frequency = excited.effective;
+            kept.intermediate_frequency = excited.intermediate;
+            kept.effective_frequency = excited.effective;
+            let activation = activated(
+                fiber,
+                &fiber.activation.at(moment.reciprocal),
+                &mut kept.sag,
+                yieldings,
+                Course::constant(frequency),
+                if frequency > self.firing { S::ONE } else { S::ZERO },
+                moment.travel,
+            );
+            *foreseen = activation.next_share();
             *result = Recruited {
-                frequency: Course::constant(frequency),
-                firing: if frequency > self.firing { S::ONE } else { S::ZERO },
+                activation,
                 weight: Course {
                     middle: unit.fraction * excited.effective_at_middle,
                     change: unit.fraction * (S::of(excited.effective) - S::of(before)),

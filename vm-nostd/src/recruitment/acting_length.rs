@@ -1,0 +1,136 @@
+//! The length that the activation-frequency relation of a motor unit takes.
+//!
+//! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own L_eff:
+//! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
+
+use super::{Course, Moment};
+use crate::domain::Range;
+use crate::params::FiberType;
+use crate::scalar::Scalar;
+use crate::state::{RestoreError, Saved};
+use crate::time_step::TimeStep;
+use core::fmt::Debug;
+
+/// Af depends on the fascicles' length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FascicleLength;
+
+/// Af depends on an effective length, which follows the fascicles' later the less a unit is active.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EffectiveLength;
+
+/// The length that the activation-frequency relation of a unit takes.
+#[doc(hidden)]
+pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
+    /// What of it changes from tick to tick.
+    type State: Copy + Debug + PartialEq;
+    type Coefficients: Copy + Debug;
+    const WORDS: usize;
+
+    /// Of a type, in a muscle whose equations hold from one fascicle length (L_ce0) to another.
+    fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients;
+    fn at_rest() -> Self::State;
+    fn words(state: Self::State) -> impl Iterator<Item = S::Bits>;
+    fn restored<I: Iterator<Item = S::Bits>>(
+        coefficients: &Self::Coefficients,
+        saved: &mut Saved<I>,
+    ) -> Result<Self::State, RestoreError>;
+
+    /// Advances it by one tick, in the middle of which Af of the unit is `activation`. None where it is
+    /// that of the fascicles.
+    fn advance<const N: usize>(
+        coefficients: &Self::Coefficients,
+        state: &mut Self::State,
+        activation: S,
+        moment: &Moment<S, N>,
+    ) -> Option<Course<S>>;
+}
+
+impl<S: Scalar> ActingLength<S> for FascicleLength {
+    type State = ();
+    type Coefficients = ();
+    const WORDS: usize = 0;
+
+    fn new(_: &FiberType, _: (f64, f64), _: TimeStep) {}
+    fn at_rest() {}
+    fn words((): ()) -> impl Iterator<Item = S::Bits> {
+        core::iter::empty()
+    }
+    fn restored<I: Iterator<Item = S::Bits>>(
+        (): &(),
+        _: &mut Saved<I>,
+    ) -> Result<(), RestoreError> {
+        Ok(())
+    }
+    fn advance<const N: usize>((): &(), (): &mut (), _: S, _: &Moment<S, N>) -> Option<Course<S>> {
+        None
+    }
+}
+
+/// 1 - Af is not taken as less: L_eff is L then, but for less than rounding.
+const LEAST_INACTIVE: f64 = 1e-4;
+
+/// Coefficients of the effective length.
+#[derive(Clone, Copy, Debug)]
+pub struct EffectiveLengthCoefficients<S: Scalar> {
+    /// dt/T_L: twice what 1/x² of the distance x = L - L_eff gains in half a tick, of an inactive unit.
+    rate: S,
+    least_inactive: S,
+    /// Where L_eff is kept: where n_f is defined.
+    range: Range<S>,
+}
+
+impl<S: Scalar> ActingLength<S> for EffectiveLength {
+    type State = S;
+    type Coefficients = EffectiveLengthCoefficients<S>;
+    const WORDS: usize = 1;
+
+    fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {
+        EffectiveLengthCoefficients {
+            rate: S::from_f64(step.seconds() / fiber_type.effective_length_time),
+            least_inactive: S::from_f64(LEAST_INACTIVE),
+            range: Range::new(domain, S::from_f64),
+        }
+    }
+
+    fn at_rest() -> S {
+        S::ONE
+    }
+
+    fn words(state: S) -> impl Iterator<Item = S::Bits> {
+        core::iter::once(state.to_bits())
+    }
+
+    fn restored<I: Iterator<Item = S::Bits>>(
+        coefficients: &Self::Coefficients,
+        saved: &mut Saved<I>,
+    ) -> Result<S, RestoreError> {
+        saved.number(|value| coefficients.range.contains(value))
+    }
+
+    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). Each half of the tick lets L
+    /// move by half of what is left of it before, and half after, the decay, which is exact:
+    /// x → x/√(1 + 2 x² t/τ).
+    fn advance<const N: usize>(
+        coefficients: &Self::Coefficients,
+        state: &mut S,
+        activation: S,
+        moment: &Moment<S, N>,
+    ) -> Option<Course<S>> {
+        let inactive = (S::ONE - activation).max(coefficients.least_inactive);
+        let quarter = moment.travel * S::HALF * S::HALF;
+        let decayed = |distance: S| {
+            let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);
+            distance * (-(grown.ln() * S::HALF)).exp()
+        };
+        let within = |length: S| coefficients.range.clip(length).0;
+        let start = moment.fascicle_length - moment.travel * S::HALF;
+        let at_middle = decayed(start - *state + quarter) + quarter;
+        let at_end = decayed(at_middle + quarter) + quarter;
+        let middle = within(moment.fascicle_length - at_middle);
+        let end = within(moment.fascicle_length + moment.travel * S::HALF - at_end);
+        let change = end - *state;
+        *state = end;
+        Some(Course { middle, change })
+    }
+}

@@ -1,0 +1,212 @@
+//! Natural discrete recruitment: motor units one by one.
+//!
+//! Uth_j = max(0.001, U_r × cross section up to and with unit j), types in order of rank;
+//! f_env_j rises linearly with U from fmin at Uth_j to fmax at U = 1;
+//! each unit has its own f_int, f_eff and S; active force Σ pcsa_j Af_j (FL FV + F_pe2).
+
+use super::acting_length::ActingLength;
+use super::firing::Firing;
+use super::motor_units::MotorUnits;
+use super::{Course, Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick, activated};
+use crate::domain::Range;
+use crate::error::ParameterError;
+use crate::muscle::Fiber;
+use crate::params::MuscleParams;
+use crate::sag::{SagParams, share_above};
+use crate::scalar::{Scalar, sealed::Sealed};
+use crate::state::{RestoreError, Saved};
+use crate::time_step::TimeStep;
+use core::marker::PhantomData;
+
+/// Natural discrete recruitment of at most `UNITS` motor units, whose Af depends on the length `A`.
+/// The stimulation frequency is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NaturalDiscrete<A, const UNITS: usize>(PhantomData<A>);
+
+impl<A, const UNITS: usize> Sealed for NaturalDiscrete<A, UNITS> {}
+
+impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitment<S, N>
+    for NaturalDiscrete<A, UNITS>
+{
+    type Units = MotorUnits<UNITS>;
+    type State = DiscreteState<S, A, UNITS>;
+    type Coefficients = Coefficients<S, A, UNITS>;
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
+    /// The frequency from which a unit counts as firing, f0.5.
+    firing: S,
+    units: [Unit<S, A::Coefficients>; UNITS],
+    /// How many of them there are.
+    count: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Unit<S: Scalar, L> {
+    /// Index of its fibre type.
+    fiber: usize,
+    /// Share of the muscle's cross section.
+    share: S,
+    firing: Firing<S>,
+    acting_length: L,
+}
+
+/// What each motor unit has of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscreteState<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
+    units: [UnitState<S, A::State>; UNITS],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct UnitState<S: Scalar, L> {
+    /// f_int, f0.5.
+    intermediate_frequency: S::Slow,
+    /// f_eff, f0.5.
+    effective_frequency: S::Slow,
+    /// S.
+    sag: S::Slow,
+    /// Af that the last tick foresaw for the middle of the next, 0..1.
+    activation: S,
+    acting_length: L,
+}
+
+/// Threshold of the first unit, however small it is.
+const LEAST_THRESHOLD: f64 = 0.001;
+
+impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> RecruitmentTick<S, N>
+    for Coefficients<S, A, UNITS>
+{
+    const PASSIVE_ONLY_PULLS: bool = false;
+    const FORCE_JUMPS: bool = false;
+
+    type Units = MotorUnits<UNITS>;
+    type State = DiscreteState<S, A, UNITS>;
+
+    fn new(
+        params: &MuscleParams<N>,
+        units: &Self::Units,
+        step: TimeStep,
+    ) -> Result<Self, ParameterError> {
+        units.validate(params)?;
+        let mut cumulative = 0.0;
+        let mut described = units.iter().filter_map(|unit| {
+            let fiber_type = &params.fibers.get(unit.fiber)?.fiber_type;
+            cumulative += unit.share;
+            let threshold = params.recruitment_saturation * cumulative;
+            let threshold = Scalar::min(Scalar::max(threshold, LEAST_THRESHOLD), 1.0);
+            Some(Unit {
+                fiber: unit.fiber,
+                share: S::from_f64(unit.share),
+                firing: Firing::new(fiber_type, threshold),
+                acting_length: A::new(fiber_type, params.fascicle_domain(), step),
+            })
+        });
+        let Some(first) = described.next() else { return Err(units.none()) };
+        // Places beyond the last unit are never stepped.
+        let mut all = [first; UNITS];
+        all.iter_mut().skip(1).zip(described).for_each(|(place, unit)| *place = unit);
+        Ok(Self { firing: S::from_f64(SagParams::FIRING), units: all, count: units.count() })
+    }
+
+    fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
+        let units = self.units.map(|unit| UnitState {
+            intermediate_frequency: S::ZERO.slow(),
+            effective_frequency: S::ZERO.slow(),
+            sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).slow(),
+            activation: S::ZERO,
+            acting_length: A::at_rest(),
+        });
+        DiscreteState { units }
+    }
+
+    fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        fibers: &[Fiber<S>; N],
+        saved: &mut Saved<I>,
+    ) -> Result<Self::State, RestoreError> {
+        let mut state = self.at_rest(fibers);
+        for (kept, unit) in state.units.iter_mut().zip(&self.units) {
+            let frequencies = Range { least: S::ZERO, most: unit.firing.frequency(S::ONE) };
+            let levels = fibers.get(unit.fiber).map_or(super::share(), |fiber| fiber.sag.range());
+            *kept = UnitState {
+                intermediate_frequency: saved.slow(&frequencies)?,
+                effective_frequency: saved.slow(&frequencies)?,
+                sag: saved.slow(&levels)?,
+                activation: saved.number(|value| super::share().contains(value))?,
+                acting_length: A::restored(&unit.acting_length, saved)?,
+            };
+        }
+        Ok(state)
+    }
+
+    fn advance(
+        &self,
+        fibers: &[Fiber<S>; N],
+        state: &mut Self::State,
+        moment: &Moment<S, N>,
+    ) -> [Recruited<S>; N] {
+        let curves = fibers.each_ref().map(|fiber| fiber.activation.at(moment.reciprocal));
+        let whole = Course::constant(S::ONE);
+        let none = Course::constant(S::ZERO);
+        let mut recruited =
+            [Recruited { activation: none, weight: whole, compression_weight: whole }; N];
+        for (kept, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
+            let of_type = fibers.get(unit.fiber).zip(curves.get(unit.fiber));
+            let yieldings = moment.yieldings.get(unit.fiber);
+            let Some((((fiber, curve), yieldings), result)) =
+                of_type.zip(yieldings).zip(recruited.get_mut(unit.fiber))
+            else {
+                continue;
+            };
+            let drive = unit.firing.frequency(moment.input.activation);
+            let before = kept.effective_frequency;
+            let excited = fiber.excitation.advance(
+                (kept.intermediate_frequency, before),
+                drive,
+                drive,
+                kept.activation,
+                moment.fascicle_length,
+            );
+            kept.intermediate_frequency = excited.intermediate;
+            kept.effective_frequency = excited.effective;
+            let acting_length =
+                A::advance(&unit.acting_length, &mut kept.acting_length, kept.activation, moment);
+            let (curve, length_change) = match acting_length {
+                Some(own) => (fiber.activation.at(own.middle.reciprocal()), own.change),
+                None => (*curve, moment.travel),
+            };
+            let (start, end) = (S::of(before), S::of(excited.effective));
+            let activation = activated(
+                fiber,
+                &curve,
+                &mut kept.sag,
+                *yieldings,
+                Course { middle: excited.effective_at_middle, change: end - start },
+                share_above(start, end, self.firing),
+                length_change,
+            );
+            kept.activation = activation.next_share();
+            let sum = &mut result.activation;
+            sum.middle = sum.middle + unit.share * activation.middle;
+            sum.change = sum.change + unit.share * activation.change;
+        }
+        recruited
+    }
+}
+
+impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
+    for DiscreteState<S, A, UNITS>
+{
+    const WORDS: usize = UNITS * (1 + 3 * S::SLOW_WORDS + A::WORDS);
+
+    fn words(&self) -> impl Iterator<Item = S::Bits> {
+        self.units.into_iter().flat_map(|unit| {
+            S::slow_words(unit.intermediate_frequency)
+                .chain(S::slow_words(unit.effective_frequency))
+                .chain(S::slow_words(unit.sag))
+                .chain([unit.activation.to_bits()])
+                .chain(A::words(unit.acting_length))
+        })
+    }
+}
