@@ -3,6 +3,7 @@
 mod cycles;
 
 use crate::engine::{self, Arithmetic};
+use crate::figures;
 use crate::golden;
 use crate::link;
 use crate::muscle_file;
@@ -39,7 +40,9 @@ enum Command {
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
     Cycles(cycles::CyclesArgs),
-    /// Compare the README's measured table with what is measured.
+    /// Make the paper's figures 4 to 7 again, with their numbers and what became of its claims.
+    Figures(FiguresArgs),
+    /// Compare the READMEs' measured tables with what is measured.
     Readme(ReadmeArgs),
 }
 
@@ -93,6 +96,16 @@ struct GoldenArgs {
 }
 
 #[derive(Debug, Args)]
+struct FiguresArgs {
+    /// The folder that they go to; made if it is not there.
+    #[arg(long)]
+    out: PathBuf,
+    /// What the muscle is computed in.
+    #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
+    arithmetic: Arithmetic,
+}
+
+#[derive(Debug, Args)]
 struct ReadmeArgs {
     /// Write what is measured.
     #[arg(long)]
@@ -135,6 +148,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => draw(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
+        Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };
     match done {
@@ -285,6 +299,19 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
         print(&"all bits are the golden ones")?;
     }
     Ok(differences.is_empty())
+}
+
+fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
+    let claims = figures::make(&args.out, args.arithmetic)?;
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["claim", "claimed", "measured", "agrees", "why not"]);
+    for claim in &claims {
+        let (agrees, why) = if claim.agrees { ("yes", "") } else { ("no", claim.why) };
+        table.add_row([claim.claim, claim.claimed, &claim.measured, agrees, why]);
+    }
+    print(&table)?;
+    Ok(())
 }
 
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {

@@ -4,6 +4,7 @@ pub mod coefficients;
 pub mod command_line;
 pub mod cycles;
 pub mod engine;
+pub mod figures;
 pub mod golden;
 pub mod link;
 pub mod metrics;

@@ -55,13 +55,13 @@ fn reduced(m: u32) -> (usize, u32, i32) {
 /// # Scaling and overflow
 /// c (1 - r + r² - r³ + r⁴) is c/(1 + r) to r⁵ < 2^-35; for r⁴, of at most 2^-28, r² times the
 /// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product with
-/// c/2, in Q0.31, below 2^25.
+/// c/2, in Q0.31, below 2^25 of either sign: the sum does not wrap around.
 pub(super) fn reciprocal(m: u32) -> u32 {
     let (_, c, r) = reduced(m);
     let square = high(r, r);
     let beyond = square + (square >> 14) - r - high(r, square);
     let half = (c >> 1) as i32;
-    half as u32 + high(half, beyond) as u32
+    (half as u32).wrapping_add_signed(high(half, beyond))
 }
 
 /// ln 2 in Q1.31.
