@@ -26,6 +26,8 @@ mod passive;
 mod presets;
 mod recruitment;
 mod sag;
+#[cfg(test)]
+mod saturation;
 mod scalar;
 mod state;
 mod tendon;

@@ -24,6 +24,8 @@ pub(super) struct Chart<'a> {
 /// Size of a panel, pixels.
 const PANEL: (u32, u32) = (900, 320);
 const TITLE_HEIGHT: u32 = 40;
+/// Room for the legend, as a share of the lines' height.
+const LEGEND: f64 = 0.35;
 /// Colours that stay apart for most eyes (Okabe and Ito), darkest first.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 0, 0),

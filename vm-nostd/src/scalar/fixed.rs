@@ -11,6 +11,8 @@ mod quotient;
 
 pub use factor::Factor;
 pub use number::Fixed;
+#[cfg(test)]
+pub(crate) use number::saturations;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};

@@ -44,6 +44,8 @@ impl From<Fixed> for I8F24 {
 impl Add for Fixed {
     type Output = Self;
     fn add(self, other: Self) -> Self {
+        #[cfg(test)]
+        saturations::note(self.0.checked_add(other.0).is_none());
         Self(self.0.saturating_add(other.0))
     }
 }
@@ -51,6 +53,8 @@ impl Add for Fixed {
 impl Sub for Fixed {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
+        #[cfg(test)]
+        saturations::note(self.0.checked_sub(other.0).is_none());
         Self(self.0.saturating_sub(other.0))
     }
 }
@@ -65,7 +69,10 @@ impl Neg for Fixed {
 impl Mul for Fixed {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self::from_bits(whole(exact(self.to_bits(), other.to_bits()), FRACTION))
+        let product = exact(self.to_bits(), other.to_bits());
+        #[cfg(test)]
+        saturations::note(product.0 << 8 >> 8 != product.0);
+        Self::from_bits(whole(product, FRACTION))
     }
 }
 
@@ -90,6 +97,25 @@ pub(super) fn whole((high, low): (i32, u32), bits: u32) -> i32 {
     let word = (high << left) | (low >> 1 >> (bits - 1)) as i32;
     // The greatest number, or with every bit turned the least.
     if word >> left == high { word } else { i32::MAX ^ (high >> 31) }
+}
+
+/// How often sums and products of a thread have saturated, for tests.
+#[cfg(test)]
+pub(crate) mod saturations {
+    use core::cell::Cell;
+
+    thread_local! {
+        static COUNT: Cell<u32> = const { Cell::new(0) };
+    }
+
+    pub(super) fn note(saturated: bool) {
+        COUNT.with(|count| count.set(count.get() + u32::from(saturated)));
+    }
+
+    /// How many there were since the last time.
+    pub(crate) fn take() -> u32 {
+        COUNT.with(|count| count.replace(0))
+    }
 }
 
 #[cfg(test)]
