@@ -53,8 +53,10 @@ pub enum RunError {
     #[error("the reference has no bits to compare")]
     NoBits,
     /// The discrete modes were asked for, and the muscle does not say what units it has.
-    #[error("fiber[{0}].units = (missing): the discrete modes need the number of motor units")]
-    NoUnits(usize),
+    #[error(
+        "units = (missing), fibre type of rank {0}: the discrete modes need the number of units"
+    )]
+    NoUnits(u8),
     /// More motor units than are built here.
     #[error("{0} motor units: a muscle has at most {most} here", most = MOST_UNITS)]
     UnitCount(usize),
@@ -174,8 +176,8 @@ fn run_units<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize, const UNITS:
 
 /// How many motor units a muscle has; refused where a type has none.
 fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
-    match muscle.fibers.iter().position(|fiber| fiber.units.is_empty()) {
-        Some(fiber) => Err(RunError::NoUnits(fiber)),
+    match muscle.fibers.iter().find(|fiber| fiber.units.is_empty()) {
+        Some(fiber) => Err(RunError::NoUnits(fiber.fiber_type.rank)),
         None => Ok(muscle.fibers.iter().map(|fiber| fiber.units.len()).sum()),
     }
 }

@@ -1,6 +1,7 @@
 //! A muscle described in TOML: read, resolved against the published sets, and validated.
 
 use crate::coefficients::{self, Row, RowError};
+use crate::engine::MOST_UNITS;
 use crate::link;
 use crate::reference::{Fiber, Muscle, UnitSizes};
 use serde::Deserialize;
@@ -145,6 +146,11 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         elements,
         fibers: order.iter().map(|&index| fibers[index].clone()).collect(),
     };
+    let units: usize = muscle.fibers.iter().map(|fiber| fiber.units.len()).sum();
+    if units > MOST_UNITS {
+        let limit = format!("a muscle has at most {MOST_UNITS} here, of all types together");
+        return Err(refuse("fiber.units".to_owned(), units.to_string(), limit));
+    }
     link::validate(&muscle).map_err(|refusal| {
         let key = match refusal.fiber {
             Some(index) => format!("fiber[{}].{}", order[index], refusal.key),
@@ -201,15 +207,15 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
     Ok(Fiber { fraction: table.fraction, units, fiber_type })
 }
 
-/// Most motor units of a fibre type.
-const MOST_UNITS: i64 = 500;
+/// The smallest unit's share of its type's cross section.
+const LEAST_SHARE: f64 = 1e-9;
 
 /// Shares of the type's motor units; none where the file names no units.
 fn units(table: &FiberTable, rank: u8) -> Result<Vec<f64>, Refusal> {
     let refuse =
         |key: &str, value: String, limit: &str| Err((key.to_owned(), value, limit.to_owned()));
     if let Some(units) = table.units
-        && !(1..=MOST_UNITS).contains(&units)
+        && !(1..=MOST_UNITS as i64).contains(&units)
     {
         let limit = format!("must be a whole number from 1 to {MOST_UNITS}");
         return refuse("units", units.to_string(), &limit);
@@ -240,11 +246,23 @@ fn units(table: &FiberTable, rank: u8) -> Result<Vec<f64>, Refusal> {
                 let limit = "must be as many as `units`, and at least one";
                 return refuse("unit_sizes", format!("{} sizes", sizes.len()), limit);
             }
-            return Ok(UnitSizes::Listed(sizes.clone()).shares(rank, sizes.len()));
+            UnitSizes::Listed(sizes.clone())
         }
     };
+    let count = match &sizes {
+        UnitSizes::Listed(sizes) => Some(sizes.len()),
+        _ => count,
+    };
     match count {
-        Some(count) => Ok(sizes.shares(rank, count)),
+        Some(count) => {
+            let shares = sizes.shares(rank, count);
+            let least = shares.iter().copied().fold(1.0, f64::min);
+            if least.is_nan() || least < LEAST_SHARE {
+                let limit = format!("the smallest unit's share, must be at least {LEAST_SHARE}");
+                return refuse("unit_sizes", least.to_string(), &limit);
+            }
+            Ok(shares)
+        }
         None if table.unit_sizes.is_some() => refuse(
             "units",
             "(missing)".to_owned(),

@@ -123,6 +123,13 @@ const FREQUENCIES: [u32; 4] = [1, 3, 5, 10];
 /// Every scenario at 1 ms and at 0.5 ms, and the vectors at the longest and shortest step too.
 pub fn all() -> Vec<Scenario> {
     let mut scenarios: Vec<Scenario> = VECTORS.iter().map(vector).collect();
+    // Of effective length there is no vector: the same inputs against the reference alone.
+    let discrete = scenarios.iter().filter(|scenario| scenario.mode == Mode::Discrete);
+    let mode = Mode::DiscreteEffectiveLength;
+    let effective: Vec<Scenario> =
+        discrete.map(|scenario| Scenario { mode, vector: None, ..scenario.clone() }).collect();
+    scenarios.extend(effective);
+    let of_vectors = scenarios.len();
     for mode in [Mode::Continuous, Mode::Fes] {
         for hz in FREQUENCIES {
             scenarios.push(generated(
@@ -172,13 +179,7 @@ pub fn all() -> Vec<Scenario> {
             [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
         }));
     }
-    // Of effective length there is no vector: the same inputs against the reference alone.
-    let discrete = scenarios.iter().filter(|scenario| scenario.mode == Mode::Discrete);
-    let mode = Mode::DiscreteEffectiveLength;
-    let effective: Vec<Scenario> =
-        discrete.map(|scenario| Scenario { mode, vector: None, ..scenario.clone() }).collect();
-    scenarios.extend(effective);
-    let vectors = &scenarios[..VECTORS.len()];
+    let vectors = &scenarios[..of_vectors];
     let mut others: Vec<Scenario> = scenarios.iter().map(|s| resampled(s, "0.5ms", 1, 2)).collect();
     others.extend(vectors.iter().map(|s| resampled(s, "0.1ms", 1, 10)));
     others.extend(scenarios.iter().map(|s| resampled(s, "2ms", 2, 1)));

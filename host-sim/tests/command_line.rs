@@ -93,8 +93,14 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         ("fraction = 0.4", "fraction = 0.4\nbeta = nan", &["fiber[1].beta = nan", "finite"]),
         ("fraction = 0.4", "fraction = 0.4\nbeta = \"b\"", &["fiber[1].beta", "a number"]),
         ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),
-        ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "1 to 500"]),
-        ("fraction = 0.4", "fraction = 0.4\nunits = 501", &["fiber[1].units = 501", "1 to 500"]),
+        ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "1 to 512"]),
+        ("fraction = 0.4", "fraction = 0.4\nunits = 513", &["fiber[1].units = 513", "1 to 512"]),
+        ("[[fiber]]", "[[fiber]]\nunits = 300", &["fiber.units = 600", "at most 512"]),
+        (
+            "fraction = 0.4",
+            "fraction = 0.4\nunits = 40\nunit_sizes = { geometric = 1 }",
+            &["fiber[1].unit_sizes = 0.0000000000009", "at least"],
+        ),
         (
             "fraction = 0.4",
             "fraction = 0.4\nunits = 2\nunit_sizes = \"odd\"",
@@ -225,7 +231,7 @@ fn motor_units_give_the_authors_forces_and_have_to_be_named() {
             let output = Bench::new(MUSCLE, VECTOR).run(mode, arithmetic);
             assert!(!output.status.success());
             let message = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(message.contains("fiber[0].units = (missing)"), "{message}");
+            assert!(message.contains("units = (missing), fibre type of rank 2"), "{message}");
         }
     }
 }

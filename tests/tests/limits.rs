@@ -2,8 +2,8 @@
 
 use firmware::MUSCLE;
 use vm_nostd::{
-    ContinuousMuscle, DiscreteMuscle, FesMuscle, Input, Limit, MotorUnits, MuscleParams,
-    RestoreError, Status, TimeStep, UnitSizes,
+    ContinuousMuscle, DiscreteMuscle, FesMuscle, Fixed, Input, Limit, MotorUnits, MuscleParams,
+    RestoreError, Scalar, Status, TimeStep, UnitSizes,
 };
 
 type Params = MuscleParams<2>;
@@ -293,6 +293,7 @@ fn motor_units_that_cannot_be_are_refused_by_field_value_and_limit() {
         (UnitSizes::Geometric(2, 1.5), "units: geometric growth", Some(1), 1.5),
         (UnitSizes::Geometric(2, -0.6), "units: geometric growth", Some(1), -0.6),
         (UnitSizes::Listed(&[1.0, 0.0]), "units: a listed size", Some(1), 0.0),
+        (UnitSizes::Listed(&[1e12, 1e-12]), SMALLEST, Some(1), 1e-24),
         (UnitSizes::Listed(&[1.0, -1.0]), "units: a listed size", Some(1), -1.0),
     ] {
         let error = refused([three, sizes]);
@@ -315,6 +316,7 @@ fn motor_units_that_cannot_be_are_refused_by_field_value_and_limit() {
     assert!((error.value - 0.6).abs() < 1e-9, "{error}");
 }
 
+const SMALLEST: &str = "units: share of the smallest in its type";
 const SHARE: &str = "units: the fraction of the type they were made for";
 
 #[test]
@@ -340,4 +342,42 @@ fn rules_of_sizes_recruit_as_the_same_sizes_listed() {
     let listed = [UnitSizes::Listed(&[3.0, 4.0, 5.0]), UnitSizes::Listed(&[4.0, 5.0, 6.0])];
     let by_default = MotorUnits::<6>::new(&MUSCLE, [UnitSizes::Default(3); 2]).expect("valid");
     assert_eq!(by_default, MotorUnits::new(&MUSCLE, listed).expect("valid"));
+}
+
+#[test]
+fn all_units_fire_as_fast_as_they_can_at_full_activation_wherever_rounding_puts_thresholds() {
+    const UNITS: usize = 32;
+    fn force<S: Scalar>(params: &Params, counts: [usize; 2]) -> f64 {
+        let sizes = counts.map(UnitSizes::Default);
+        let units = MotorUnits::<UNITS>::new(params, sizes).expect("valid units");
+        let step = TimeStep::MILLISECOND;
+        let muscle = DiscreteMuscle::<S, 2, UNITS>::build_with_units(params, &units, step);
+        let muscle = muscle.expect("a valid muscle");
+        let path_length = S::path_length(0.16);
+        let stimulation_frequency = S::frequency(0.0);
+        let input = Input { activation: S::ONE, path_length, stimulation_frequency };
+        let mut state = muscle.rest(path_length).expect("in range");
+        let force = (0..1000).map(|_| muscle.step(&mut state, input).force).last();
+        S::newtons(force.expect("ticks"))
+    }
+    let mut params = MUSCLE;
+    params.recruitment_saturation = 1.0;
+    for (slow, fast) in [(0.6, 0.4), (0.5, 0.5), (0.3, 0.7), (0.6, 0.399_999_5)] {
+        (params.fibers[0].fraction, params.fibers[1].fraction) = (slow, fast);
+        // Of all units, whatever their number and sizes, the force is nearly the same.
+        let one = force::<f64>(&params, [1, 1]);
+        for counts in [[7, 1], [1, 14], [3, 3], [11, 7], [16, 16]] {
+            let found = [
+                force::<f64>(&params, counts),
+                force::<f32>(&params, counts),
+                force::<Fixed>(&params, counts),
+            ];
+            for force in found {
+                assert!(
+                    (force - one).abs() < 0.02,
+                    "{slow} {fast} {counts:?}: {found:?}, not {one}"
+                );
+            }
+        }
+    }
 }

@@ -62,15 +62,16 @@ impl Chart<'_> {
         panel: &Panel,
     ) -> Result<(), Box<dyn std::error::Error>> {
         let points = || panel.lines.iter().flat_map(|(_, points)| points);
-        let range = |values: &mut dyn Iterator<Item = f64>, margin: f64| {
+        let range = |values: &mut dyn Iterator<Item = f64>, below: f64, above: f64| {
             let (least, most) =
                 values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-            let margin = (margin * (most - least)).max(1e-9);
-            (least - margin)..(most + margin)
+            let height = (most - least).max(1e-9);
+            (least - below * height)..(most + above * height)
         };
+        // Above the lines there is room for the legend.
         let (x, y) = (
-            range(&mut points().map(|point| point.0), 0.0),
-            range(&mut points().map(|point| point.1), 0.05),
+            range(&mut points().map(|point| point.0), 0.0, 0.0),
+            range(&mut points().map(|point| point.1), 0.05, LEGEND),
         );
         let mut chart = ChartBuilder::on(area)
             .margin(8)

@@ -59,7 +59,8 @@ pub fn units(muscle: &Muscle, mode: Mode) -> Vec<Unit> {
             .flat_map(|(fiber, f)| f.units.iter().map(move |share| (fiber, share * f.fraction)))
             .scan(0.0, |cumulative, (fiber, pcsa)| {
                 *cumulative += pcsa;
-                let threshold = (muscle.U_r * *cumulative).max(0.001);
+                // The shares add to 1 but for rounding.
+                let threshold = (muscle.U_r * *cumulative).clamp(0.001, 1.0);
                 Some(Unit { fiber, pcsa, threshold })
             })
             .collect(),

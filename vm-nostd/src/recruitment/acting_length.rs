@@ -67,13 +67,13 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
     }
 }
 
-/// 1 - Af is not taken as less: L_eff is L then, but for less than rounding.
+/// 1 - Af is not taken as less: n_f has hardly an influence on Af then.
 const LEAST_INACTIVE: f64 = 1e-4;
 
 /// Coefficients of the effective length.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectiveLengthCoefficients<S: Scalar> {
-    /// dt/T_L: twice what 1/x² of the distance x = L - L_eff gains in half a tick, of an inactive unit.
+    /// dt/T_L: what 1/x² of the distance x = L - L_eff gains in half a tick, of an inactive unit.
     rate: S,
     least_inactive: S,
     /// Where L_eff is kept: where n_f is defined.
@@ -81,9 +81,9 @@ pub struct EffectiveLengthCoefficients<S: Scalar> {
 }
 
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
-    type State = S;
+    type State = S::Slow;
     type Coefficients = EffectiveLengthCoefficients<S>;
-    const WORDS: usize = 1;
+    const WORDS: usize = S::SLOW_WORDS;
 
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {
         EffectiveLengthCoefficients {
@@ -93,44 +93,44 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         }
     }
 
-    fn at_rest() -> S {
-        S::ONE
+    fn at_rest() -> S::Slow {
+        S::ONE.slow()
     }
 
-    fn words(state: S) -> impl Iterator<Item = S::Bits> {
-        core::iter::once(state.to_bits())
+    fn words(state: S::Slow) -> impl Iterator<Item = S::Bits> {
+        S::slow_words(state)
     }
 
     fn restored<I: Iterator<Item = S::Bits>>(
         coefficients: &Self::Coefficients,
         saved: &mut Saved<I>,
-    ) -> Result<S, RestoreError> {
-        saved.number(|value| coefficients.range.contains(value))
+    ) -> Result<S::Slow, RestoreError> {
+        saved.slow(&coefficients.range)
     }
 
-    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). Each half of the tick lets L
-    /// move by half of what is left of it before, and half after, the decay, which is exact:
-    /// x → x/√(1 + 2 x² t/τ).
+    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half of the tick L is
+    /// where it is in the middle of that, and the rest is exact: x → x/√(1 + 2 x² t/τ).
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
-        state: &mut S,
+        state: &mut S::Slow,
         activation: S,
         moment: &Moment<S, N>,
     ) -> Option<Course<S>> {
+        let before = S::of(*state);
         let inactive = (S::ONE - activation).max(coefficients.least_inactive);
         let quarter = moment.travel * S::HALF * S::HALF;
-        let decayed = |distance: S| {
+        // The way to a length, and the share 1 - 1/√grown of it that is gone, as that of a lag.
+        let step = |length: S, from: S| {
+            let distance = coefficients.range.clip(length).0 - from;
             let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);
-            distance * (-(grown.ln() * S::HALF)).exp()
+            let [half, _] = grown.ln().lags();
+            (distance, half.done)
         };
-        let within = |length: S| coefficients.range.clip(length).0;
-        let start = moment.fascicle_length - moment.travel * S::HALF;
-        let at_middle = decayed(start - *state + quarter) + quarter;
-        let at_end = decayed(at_middle + quarter) + quarter;
-        let middle = within(moment.fascicle_length - at_middle);
-        let end = within(moment.fascicle_length + moment.travel * S::HALF - at_end);
-        let change = end - *state;
-        *state = end;
-        Some(Course { middle, change })
+        let first = step(moment.fascicle_length - quarter, before);
+        let middle = S::of(S::moved(*state, first.0, first.1));
+        let second = step(moment.fascicle_length + quarter, middle);
+        *state = S::moved_by_two(*state, first, second);
+        let end = S::of(*state);
+        Some(Course { middle, change: end - before })
     }
 }

@@ -9,34 +9,34 @@ use crate::scalar::Scalar;
 pub(super) struct Firing<S: Scalar> {
     /// Uth.
     pub(super) threshold: S,
-    /// fmin.
     minimum_frequency: S,
+    maximum_frequency: S,
     /// (fmax - fmin)/(1 - Uth).
     slope: S::Factor,
 }
 
+/// 1 - Uth is not taken as less: what is recruited at U = 1 only fires as all do then.
+const LEAST_RANGE: f64 = 1e-6;
+
 impl<S: Scalar> Firing<S> {
     pub(super) fn new(fiber_type: &FiberType, threshold: f64) -> Self {
         let FiberType { minimum_frequency, maximum_frequency, .. } = *fiber_type;
-        // What is only recruited at U = 1 fires as all do then.
-        let (least, slope) = if threshold < 1.0 {
-            (minimum_frequency, (maximum_frequency - minimum_frequency) / (1.0 - threshold))
-        } else {
-            (maximum_frequency, 0.0)
-        };
+        let range = Scalar::max(1.0 - threshold, LEAST_RANGE);
         Self {
             threshold: S::from_f64(threshold),
-            minimum_frequency: S::from_f64(least),
-            slope: S::factor(slope),
+            minimum_frequency: S::from_f64(minimum_frequency),
+            maximum_frequency: S::from_f64(maximum_frequency),
+            slope: S::factor((maximum_frequency - minimum_frequency) / range),
         }
     }
 
-    /// f_env (f0.5) at a raw activation.
+    /// f_env (f0.5) at a raw activation. From fmax down: it is met at U = 1 however near to that the
+    /// threshold is.
     pub(super) fn frequency(&self, activation: S) -> S {
-        if activation >= self.threshold {
-            self.minimum_frequency + (activation - self.threshold).scaled(&self.slope)
-        } else {
-            S::ZERO
+        if activation < self.threshold {
+            return S::ZERO;
         }
+        let below = (S::ONE - activation).scaled(&self.slope);
+        (self.maximum_frequency - below).max(self.minimum_frequency)
     }
 }

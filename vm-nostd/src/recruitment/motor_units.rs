@@ -13,7 +13,7 @@ pub enum UnitSizes<'a> {
     Equal(usize),
     /// So many units, each larger than the one before by a share of it, -0.5 to 1.
     Geometric(usize, f64),
-    /// These sizes relative to each other, each 1e-6 to 1e6.
+    /// These sizes relative to each other, each 1e-12 to 1e12.
     Listed(&'a [f64]),
 }
 
@@ -21,6 +21,9 @@ const COUNT: &str = "units: their number";
 const TOO_MANY: &str = "units: the number of all types together";
 const GROWTH: &str = "units: geometric growth";
 const SIZE: &str = "units: a listed size";
+const SMALLEST: &str = "units: share of the smallest in its type";
+/// The smallest unit's share of its type's cross section.
+const LEAST_SHARE: f64 = 1e-9;
 const TYPES: &str = "units: the number of types they were made for";
 const SHARE: &str = "units: the fraction of the type they were made for";
 /// What the units of a type may differ from its fraction by.
@@ -50,7 +53,9 @@ impl UnitSizes<'_> {
         within(COUNT, self.count() as f64, 1.0, most as f64)?;
         match self {
             Self::Geometric(_, growth) => within(GROWTH, *growth, -0.5, 1.0),
-            Self::Listed(sizes) => sizes.iter().try_for_each(|size| within(SIZE, *size, 1e-6, 1e6)),
+            Self::Listed(sizes) => {
+                sizes.iter().try_for_each(|size| within(SIZE, *size, 1e-12, 1e12))
+            }
             _ => Ok(()),
         }
     }
@@ -73,7 +78,8 @@ pub struct MotorUnits<const UNITS: usize> {
 
 impl<const UNITS: usize> MotorUnits<UNITS> {
     /// The units that divide the types of a muscle by a rule for each type. Refused where a type has
-    /// none, where all together are more than `UNITS`, and where a size is out of its range.
+    /// none, where all together are more than `UNITS`, where a size is out of its range, and where a unit
+    /// has less than 1e-9 of its type.
     pub fn new<const N: usize>(
         params: &MuscleParams<N>,
         sizes: [UnitSizes<'_>; N],
@@ -96,6 +102,7 @@ impl<const UNITS: usize> MotorUnits<UNITS> {
                 })?;
             }
             for unit in units.iter_mut().skip(first) {
+                within(SMALLEST, unit.share / sum, LEAST_SHARE, 1.0).map_err(of_type)?;
                 unit.share *= type_params.fraction / sum;
             }
         }

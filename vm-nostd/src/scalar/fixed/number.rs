@@ -87,7 +87,7 @@ pub(super) fn high(a: i32, b: i32) -> i32 {
     exact(a, b).0
 }
 
-/// Two words less their last `bits`, 0 to 32: the next lower number, saturated.
+/// Two words less their last `bits`, 1 to 32: the next lower number, saturated.
 ///
 /// # Scaling and overflow
 /// What is left fits if the high word, shifted left, comes back when it is shifted right. The test
