@@ -95,7 +95,6 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),
         ("fraction = 0.4", "fraction = 0.4\nunits = 0", &["fiber[1].units = 0", "1 to 512"]),
         ("fraction = 0.4", "fraction = 0.4\nunits = 513", &["fiber[1].units = 513", "1 to 512"]),
-        ("[[fiber]]", "[[fiber]]\nunits = 300", &["fiber.units = 600", "at most 512"]),
         (
             "fraction = 0.4",
             "fraction = 0.4\nunits = 40\nunit_sizes = { geometric = 1 }",
@@ -139,6 +138,8 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         expected.extend(*words);
         Bench::new(&muscle(line, other), &rows(GOOD)).refused(&expected);
     }
+    let many = MUSCLE.replace("[[fiber]]", "[[fiber]]\nunits = 300");
+    Bench::new(&many, &rows(GOOD)).refused(&["m.toml", "fiber.units = 600", "at most 512"]);
 }
 
 #[test]
