@@ -41,6 +41,11 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
         // Conditional branches, and those that an IT block makes conditional, may also go on: a
         // step too many is harmless, one too few is not.
         let (goes_on, target) = match instruction.class {
+            // A branch by a table (TBB, TBH), which follows.
+            _ if mnemonic(text).starts_with("tb") => {
+                reached.indirect.insert(address, text.clone());
+                (false, None)
+            }
             // A Cortex-M0 reaches far within a function by BL, and does not come back.
             Class::Call => {
                 let target = target(text);
