@@ -374,7 +374,7 @@ fn all_units_fire_as_fast_as_they_can_at_full_activation_wherever_rounding_puts_
             ];
             for force in found {
                 assert!(
-                    (force - one).abs() < 0.02,
+                    (force - one).abs() < 0.007,
                     "{slow} {fast} {counts:?}: {found:?}, not {one}"
                 );
             }

@@ -50,8 +50,8 @@ fn the_static_curves_of_force_by_activation_are_the_authors() {
             // The table has three decimals.
             for (arithmetic, at, most) in [
                 (Arithmetic::Reference, activation, 0.001),
-                (Arithmetic::F32, activation + beside, 0.002),
-                (Arithmetic::Fixed, activation + beside, 0.02),
+                (Arithmetic::F32, activation + beside, 0.0016),
+                (Arithmetic::Fixed, activation + beside, 0.01),
             ] {
                 let found = steady_force(units, at, arithmetic);
                 let error = (found - force).abs();

@@ -31,8 +31,8 @@ const RANGES_NEAR_ONE: f64 = 0.15;
 const ABOUT: f64 = 0.5;
 
 /// Why length sinusoids at a constant activation differ.
-const STEADY_DIFFERENCE: &str = "at the same U of 0.5, continuous recruitment holds 11 % less force than 30 + 30 \
-     units (static_force.csv); from 5 Hz on, the tendon goes slack and snaps";
+const STEADY_DIFFERENCE: &str = "at the same U of 0.5, continuous recruitment holds less force than 30 + 30 \
+     units (static_force.csv); at the higher frequencies the tendon goes slack and snaps";
 
 /// Continuous over discrete, by one kind of sinusoid.
 fn ratio(
@@ -109,8 +109,8 @@ pub(super) fn judge(
             claimed: "less than 1 %",
             measured: format!("{by_length:.2} %"),
             agrees: by_length < 1.0,
-            why: "the L_eff of a unit that is not fully active lags behind L, and n_f with it; from \
-                  5 Hz on, the tendon goes slack and snaps, and small delays make large differences",
+            why: "the L_eff of a unit that is not fully active lags behind L, and n_f with it; where \
+                  the tendon goes slack and snaps, small delays make large differences",
         },
         Claim {
             claim: "time of discrete 30 + 30 over continuous",
