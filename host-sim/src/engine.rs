@@ -3,6 +3,7 @@
 use crate::link::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Sample, Simulation, SolverError};
 use crate::trace::InputTrace;
+use std::rc::Rc;
 use vm_nostd as vm;
 
 /// What a muscle is computed in.
@@ -68,6 +69,35 @@ pub enum RunError {
 /// What a row of a run yields: force, length and velocity, and what was saturated.
 pub type Row = (Sample, vm::Status);
 
+/// A muscle on its way, tick by tick.
+pub trait Running {
+    /// Where it is.
+    fn row(&self) -> Row;
+    /// Steps one tick.
+    fn step(&mut self, input: Input) -> Result<Row, RunError>;
+    /// Another one in the same state.
+    fn fork(&self) -> Box<dyn Running>;
+    /// Gives the words of its state to `watch`; the reference has none.
+    fn watch(&self, watch: &mut dyn FnMut(u64));
+}
+
+/// A muscle at rest on a path (m), to be stepped by `time_step` (s).
+pub fn at_rest(
+    muscle: &Muscle,
+    mode: Mode,
+    arithmetic: Arithmetic,
+    time_step: f64,
+    path_length: f64,
+) -> Result<Box<dyn Running>, RunError> {
+    let rest = Rest { muscle, time_step, path_length };
+    match arithmetic {
+        Arithmetic::Reference => rest.reference(mode),
+        Arithmetic::F32 => rest.of_scalar::<f32>(mode),
+        Arithmetic::Fixed => rest.of_scalar::<vm::Fixed>(mode),
+        Arithmetic::F64 => rest.of_scalar::<f64>(mode),
+    }
+}
+
 /// Runs a muscle over a trace: one row per input, the first of them the muscle at rest.
 pub fn run(
     muscle: &Muscle,
@@ -75,29 +105,14 @@ pub fn run(
     arithmetic: Arithmetic,
     trace: &InputTrace,
 ) -> Result<Vec<Row>, RunError> {
-    match arithmetic {
-        Arithmetic::Reference => run_reference(muscle, mode, trace),
-        Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut |_| {}),
-        Arithmetic::Fixed => run_vm::<vm::Fixed>(muscle, mode, trace, &mut |_| {}),
-        Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut |_| {}),
-    }
-}
-
-fn run_reference(muscle: &Muscle, mode: Mode, trace: &InputTrace) -> Result<Vec<Row>, RunError> {
-    if matches!(mode, Mode::Discrete | Mode::DiscreteEffectiveLength) {
-        count_units(muscle)?;
-    }
     let path = trace.inputs[0].path_length;
-    let mut simulation = Simulation::at_rest(muscle.clone(), mode, trace.time_step, path);
-    let mut rows = vec![(simulation.sample(), vm::Status::empty())];
+    let mut running = at_rest(muscle, mode, arithmetic, trace.time_step, path)?;
+    let mut rows = vec![running.row()];
     for &input in &trace.inputs[1..] {
-        rows.push((simulation.step(input)?, vm::Status::empty()));
+        rows.push(running.step(input)?);
     }
     Ok(rows)
 }
-
-/// What is done with the bits of the state after every tick.
-type Watch<'a> = &'a mut dyn FnMut(u64);
 
 /// A checksum (CRC-64/XZ) of the bits of the state after every tick.
 pub fn fingerprint(
@@ -106,73 +121,123 @@ pub fn fingerprint(
     arithmetic: Arithmetic,
     trace: &InputTrace,
 ) -> Result<u64, RunError> {
+    if arithmetic == Arithmetic::Reference {
+        return Err(RunError::NoBits);
+    }
+    let path = trace.inputs[0].path_length;
+    let mut running = at_rest(muscle, mode, arithmetic, trace.time_step, path)?;
     let crc = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
     let mut digest = crc.digest();
-    let mut watch = |word: u64| digest.update(&word.to_le_bytes());
-    match arithmetic {
-        Arithmetic::Reference => return Err(RunError::NoBits),
-        Arithmetic::F32 => run_vm::<f32>(muscle, mode, trace, &mut watch)?,
-        Arithmetic::Fixed => run_vm::<vm::Fixed>(muscle, mode, trace, &mut watch)?,
-        Arithmetic::F64 => run_vm::<f64>(muscle, mode, trace, &mut watch)?,
-    };
+    for &input in &trace.inputs[1..] {
+        running.step(input)?;
+        running.watch(&mut |word| digest.update(&word.to_le_bytes()));
+    }
     Ok(digest.finalize())
 }
 
-fn run_vm<S: vm::Scalar>(
-    muscle: &Muscle,
-    mode: Mode,
-    trace: &InputTrace,
-    watch: Watch<'_>,
-) -> Result<Vec<Row>, RunError> {
-    with_type_count!(
-        muscle,
-        N => match mode {
-            Mode::Continuous => run_lumped::<S, vm::NaturalContinuous, N>(muscle, trace, watch),
-            Mode::Fes => run_lumped::<S, vm::IntramuscularFes, N>(muscle, trace, watch),
-            Mode::Discrete => run_discrete::<S, vm::FascicleLength, N>(muscle, trace, watch),
-            Mode::DiscreteEffectiveLength => {
-                run_discrete::<S, vm::EffectiveLength, N>(muscle, trace, watch)
-            }
-        },
-        else Err(RunError::TypeCount(muscle.fibers.len()))
-    )
+/// What a run starts from.
+struct Rest<'a> {
+    muscle: &'a Muscle,
+    time_step: f64,
+    path_length: f64,
 }
 
-/// A mode that takes each fibre type as one unit.
-fn run_lumped<S: vm::Scalar, R: vm::Recruitment<S, N, Units = ()>, const N: usize>(
-    muscle: &Muscle,
-    trace: &InputTrace,
-    watch: Watch<'_>,
-) -> Result<Vec<Row>, RunError> {
-    run_mode::<S, R, N>(muscle, &(), trace, watch)
+impl Rest<'_> {
+    fn reference(&self, mode: Mode) -> Result<Box<dyn Running>, RunError> {
+        if matches!(mode, Mode::Discrete | Mode::DiscreteEffectiveLength) {
+            count_units(self.muscle)?;
+        }
+        let muscle = self.muscle.clone();
+        Ok(Box::new(Simulation::at_rest(muscle, mode, self.time_step, self.path_length)))
+    }
+
+    fn of_scalar<S: vm::Scalar>(&self, mode: Mode) -> Result<Box<dyn Running>, RunError> {
+        with_type_count!(
+            self.muscle,
+            N => match mode {
+                Mode::Continuous => self.of_mode::<S, vm::NaturalContinuous, N>(&()),
+                Mode::Fes => self.of_mode::<S, vm::IntramuscularFes, N>(&()),
+                Mode::Discrete => self.discrete::<S, vm::FascicleLength, N>(),
+                Mode::DiscreteEffectiveLength => self.discrete::<S, vm::EffectiveLength, N>(),
+            },
+            else Err(RunError::TypeCount(self.muscle.fibers.len()))
+        )
+    }
+
+    /// A mode of motor units, with room for at least as many as the muscle has.
+    fn discrete<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize>(
+        &self,
+    ) -> Result<Box<dyn Running>, RunError> {
+        let count = count_units(self.muscle)?;
+        match count {
+            0..=8 => self.of_units::<S, A, N, 8>(),
+            9..=64 => self.of_units::<S, A, N, 64>(),
+            65..=MOST_UNITS => self.of_units::<S, A, N, MOST_UNITS>(),
+            _ => Err(RunError::UnitCount(count)),
+        }
+    }
+
+    fn of_units<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize, const UNITS: usize>(
+        &self,
+    ) -> Result<Box<dyn Running>, RunError> {
+        let units = link::motor_units::<N, UNITS>(self.muscle)?;
+        self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(&units)
+    }
+
+    fn of_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
+        &self,
+        units: &R::Units,
+    ) -> Result<Box<dyn Running>, RunError> {
+        let step = vm::TimeStep::from_seconds(self.time_step)?;
+        let params = link::params(self.muscle);
+        let muscle = vm::Muscle::<S, R, N>::build_with_units(&params, units, step)?;
+        let state = muscle.rest(S::path_length(self.path_length))?;
+        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state }))
+    }
+}
+
+impl Running for Simulation {
+    fn row(&self) -> Row {
+        (self.sample(), vm::Status::empty())
+    }
+
+    fn step(&mut self, input: Input) -> Result<Row, RunError> {
+        Ok((Simulation::step(self, input)?, vm::Status::empty()))
+    }
+
+    fn fork(&self) -> Box<dyn Running> {
+        Box::new(self.clone())
+    }
+
+    fn watch(&self, _: &mut dyn FnMut(u64)) {}
+}
+
+/// A muscle of `vm-nostd` and its state.
+struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
+    muscle: Rc<vm::Muscle<S, R, N>>,
+    state: vm::State<S, R, N>,
+}
+
+impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Stepped<S, R, N> {
+    fn row(&self) -> Row {
+        row(self.muscle.observe(&self.state))
+    }
+
+    fn step(&mut self, input: Input) -> Result<Row, RunError> {
+        Ok(row(self.muscle.step(&mut self.state, scaled(&input))))
+    }
+
+    fn fork(&self) -> Box<dyn Running> {
+        Box::new(Self { muscle: Rc::clone(&self.muscle), state: self.state })
+    }
+
+    fn watch(&self, watch: &mut dyn FnMut(u64)) {
+        self.state.words().for_each(|word| watch(word.into()));
+    }
 }
 
 /// The most motor units that a muscle can have here; in firmware the number is free.
 pub const MOST_UNITS: usize = 512;
-
-/// A mode of motor units, with room for at least as many as the muscle has.
-fn run_discrete<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize>(
-    muscle: &Muscle,
-    trace: &InputTrace,
-    watch: Watch<'_>,
-) -> Result<Vec<Row>, RunError> {
-    let count = count_units(muscle)?;
-    match count {
-        0..=8 => run_units::<S, A, N, 8>(muscle, trace, watch),
-        9..=64 => run_units::<S, A, N, 64>(muscle, trace, watch),
-        65..=MOST_UNITS => run_units::<S, A, N, MOST_UNITS>(muscle, trace, watch),
-        _ => Err(RunError::UnitCount(count)),
-    }
-}
-
-fn run_units<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize, const UNITS: usize>(
-    muscle: &Muscle,
-    trace: &InputTrace,
-    watch: Watch<'_>,
-) -> Result<Vec<Row>, RunError> {
-    let units = link::motor_units::<N, UNITS>(muscle)?;
-    run_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(muscle, &units, trace, watch)
-}
 
 /// How many motor units a muscle has; refused where a type has none.
 fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
@@ -180,23 +245,6 @@ fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
         Some(fiber) => Err(RunError::NoUnits(fiber.fiber_type.rank)),
         None => Ok(muscle.fibers.iter().map(|fiber| fiber.units.len()).sum()),
     }
-}
-
-fn run_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
-    muscle: &Muscle,
-    units: &R::Units,
-    trace: &InputTrace,
-    watch: Watch<'_>,
-) -> Result<Vec<Row>, RunError> {
-    let step = vm::TimeStep::from_seconds(trace.time_step)?;
-    let muscle = vm::Muscle::<S, R, N>::build_with_units(&link::params(muscle), units, step)?;
-    let mut state = muscle.rest(S::path_length(trace.inputs[0].path_length))?;
-    let mut rows = vec![row(muscle.observe(&state))];
-    for input in &trace.inputs[1..] {
-        rows.push(row(muscle.step(&mut state, scaled(input))));
-        state.words().for_each(|word| watch(word.into()));
-    }
-    Ok(rows)
 }
 
 fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {
