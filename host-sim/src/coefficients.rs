@@ -1,6 +1,6 @@
 //! The published coefficient sets, read from the tables in `host-sim/data`.
 
-use crate::reference::{Elements, FiberType, Sag, Yielding};
+use crate::reference::{Elements, Fiber, FiberType, Sag, Yielding};
 use std::collections::BTreeMap;
 
 const FIBERS: &str = include_str!("../data/fibers.csv");
@@ -69,6 +69,12 @@ pub fn fiber_columns() -> Vec<String> {
 /// The row of a preset fibre type, such as "paper-table-1/slow".
 pub fn fiber_row(preset: &str) -> Option<Row> {
     find(fiber_rows(), preset)
+}
+
+/// A preset type with its share of a muscle's cross section, not divided into motor units.
+pub fn fiber(preset: &str, fraction: f64) -> Option<Fiber> {
+    let fiber_type = fiber_type(&fiber_row(preset)?).ok()?;
+    Some(Fiber { fraction, units: Vec::new(), fiber_type })
 }
 
 /// The shared elements of a set, such as "paper-table-1".

@@ -1,5 +1,6 @@
 //! The command line `vm`.
 
+mod arm;
 mod cycles;
 
 use crate::engine::{self, Arithmetic};
@@ -40,7 +41,9 @@ enum Command {
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
     Cycles(cycles::CyclesArgs),
-    /// Make the paper's figures 4 to 7 again, with their numbers and what became of its claims.
+    /// Let six muscles move a planar arm of two joints, at constant activations.
+    Arm(arm::ArmArgs),
+    /// Make the paper's figures 3 to 7 again, with their numbers and what became of its claims.
     Figures(FiguresArgs),
     /// Compare the READMEs' measured tables with what is measured.
     Readme(ReadmeArgs),
@@ -148,6 +151,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => draw(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
+        Command::Arm(args) => arm::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };

@@ -1,17 +1,19 @@
 //! The figures of the paper, measured again: SVG with the numbers beside them in CSV, and what the paper
 //! claims against what is found.
 //!
-//! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184, section 3. Figure 3, the arm, is
-//! not built.
+//! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184, section 3.
 
+mod arm;
 mod chart;
 mod claims;
 mod computation_time;
 mod sinusoids;
 mod static_force;
 
+pub use arm::{ACTIVATIONS as ARM_ACTIVATIONS, DURATION as ARM_DURATION, START as ARM_START};
 pub use claims::Claim;
 
+use crate::arm::ArmError;
 use crate::engine::{Arithmetic, RunError};
 use crate::reference::{Mode, Muscle};
 use crate::scenario::{paper_muscle, paper_muscle_of_units};
@@ -25,6 +27,9 @@ pub enum FiguresError {
     /// A run stopped.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The arm stopped.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] TraceError),
@@ -89,10 +94,11 @@ pub fn make(folder: &Path, arithmetic: Arithmetic) -> Result<Vec<Claim>, Figures
     std::fs::create_dir_all(folder)
         .map_err(|source| FiguresError::Folder { path: folder.to_owned(), source })?;
     let folder = Folder(folder);
+    let arms = arm::make(&folder, arithmetic)?;
     let curve = static_force::make(&folder, arithmetic)?;
     let dynamics = sinusoids::make(&folder, arithmetic)?;
     let times = computation_time::make(&folder)?;
-    let claims = claims::judge(&curve, &dynamics, &times);
+    let claims = claims::judge(&arms, &curve, &dynamics, &times);
     folder.table("claims.csv", &claims)?;
     Ok(claims)
 }

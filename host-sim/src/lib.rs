@@ -1,5 +1,6 @@
 //! Host side of the muscle model: the independent reference, and the proof of accuracy.
 
+pub mod arm;
 pub mod coefficients;
 pub mod command_line;
 pub mod cycles;

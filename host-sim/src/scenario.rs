@@ -79,9 +79,7 @@ fn feline_muscle() -> Muscle {
 }
 
 fn preset(name: &str, fraction: f64) -> Fiber {
-    let row = coefficients::fiber_row(name).expect("a published preset");
-    let fiber_type = coefficients::fiber_type(&row).expect("a full row");
-    Fiber { fraction, units: Vec::new(), fiber_type }
+    coefficients::fiber(name, fraction).expect("a published preset")
 }
 
 /// One of the vectors in `host-sim/data/vectors`.

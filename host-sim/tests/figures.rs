@@ -25,6 +25,7 @@ fn figures_come_with_their_numbers_and_claims() {
     let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
 
     for name in [
+        "arm",
         "static_force",
         "static_force_start",
         "sinusoid_responses",
@@ -47,11 +48,13 @@ fn figures_come_with_their_numbers_and_claims() {
     assert_eq!(read("sinusoids.csv").lines().count(), 1 + 2 * 10);
     assert_eq!(read("sinusoid_responses.csv").lines().count(), 1 + 2 * 1000);
 
-    // The first seven claims do not depend on the machine.
+    assert_eq!(read("arm.csv").lines().count(), 1 + 5001);
+
+    // The first nine claims do not depend on the machine.
     let claims = read("claims.csv");
     let agree: Vec<bool> =
-        claims.lines().skip(1).take(7).map(|line| line.contains(",true,")).collect();
-    assert_eq!(agree, [true, true, true, false, false, true, false], "{claims}");
-    assert_eq!(claims.lines().count(), 1 + 9);
+        claims.lines().skip(1).take(9).map(|line| line.contains(",true,")).collect();
+    assert_eq!(agree, [true, true, true, true, true, false, false, true, false], "{claims}");
+    assert_eq!(claims.lines().count(), 1 + 11);
     assert!(String::from_utf8_lossy(&output.stdout).contains("why not"));
 }

@@ -1,0 +1,228 @@
+//! The arm of `host-sim/data/arm.toml`.
+
+use super::path::PathPolynomial;
+use super::skeleton::{Joints, Segment, Skeleton};
+use crate::coefficients;
+use crate::reference::{Muscle, UnitSizes};
+use serde::Deserialize;
+
+const FILE: &str = include_str!("../../data/arm.toml");
+
+/// Which activation a muscle gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Group {
+    /// Over the shoulder alone.
+    Shoulder,
+    /// Over the elbow alone.
+    Elbow,
+    /// Over both.
+    Biarticular,
+}
+
+/// One of the arm's muscles.
+#[derive(Clone, Debug)]
+pub struct ArmMuscle {
+    /// Name.
+    pub name: String,
+    /// Which activation it gets.
+    pub group: Group,
+    /// Its path.
+    pub path: PathPolynomial,
+    /// The muscle.
+    pub muscle: Muscle,
+}
+
+/// Skeleton and muscles.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// Segments.
+    pub skeleton: Skeleton,
+    /// The joints move between these, rad.
+    pub least_angles: Joints,
+    /// See `least_angles`.
+    pub greatest_angles: Joints,
+    /// Flexor and extensor of shoulder and of elbow, and of both.
+    pub muscles: Vec<ArmMuscle>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    coefficients: String,
+    recruitment_saturation: f64,
+    reference_angles_deg: Joints,
+    least_angles_deg: Joints,
+    greatest_angles_deg: Joints,
+    units: usize,
+    fiber: Vec<FiberTable>,
+    upper_arm: SegmentTable,
+    forearm: SegmentTable,
+    muscle: Vec<MuscleTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FiberTable {
+    preset: String,
+    fraction: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SegmentTable {
+    mass_kg: f64,
+    length_cm: f64,
+    centre_cm: f64,
+    inertia_kg_m2: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MuscleTable {
+    name: String,
+    group: Group,
+    max_isometric_force_n: f64,
+    fascicle_length_cm: f64,
+    tendon_slack_length_cm: f64,
+    path_cm: f64,
+    per_rad_cm: Joints,
+    per_rad2_cm: Joints,
+}
+
+fn metres(centimetres: Joints) -> Joints {
+    centimetres.map(|length| length * 1e-2)
+}
+
+impl From<&SegmentTable> for Segment {
+    fn from(table: &SegmentTable) -> Self {
+        Self {
+            mass: table.mass_kg,
+            length: table.length_cm * 1e-2,
+            centre: table.centre_cm * 1e-2,
+            inertia: table.inertia_kg_m2,
+        }
+    }
+}
+
+impl Arm {
+    /// The arm of the data file.
+    ///
+    /// # Panics
+    /// If that file, which is built in, is not as it should be.
+    pub fn built_in() -> Self {
+        let file: File = toml::from_str(FILE).expect("a built-in arm");
+        Self {
+            skeleton: Skeleton {
+                upper_arm: (&file.upper_arm).into(),
+                forearm: (&file.forearm).into(),
+            },
+            least_angles: file.least_angles_deg.map(f64::to_radians),
+            greatest_angles: file.greatest_angles_deg.map(f64::to_radians),
+            muscles: file.muscle.iter().map(|table| file.muscle_of(table)).collect(),
+        }
+    }
+}
+
+impl File {
+    fn muscle_of(&self, table: &MuscleTable) -> ArmMuscle {
+        let elements = coefficients::elements(&self.coefficients).expect("a published set");
+        let path = PathPolynomial {
+            length: table.path_cm * 1e-2,
+            reference: self.reference_angles_deg.map(f64::to_radians),
+            linear: metres(table.per_rad_cm),
+            quadratic: metres(table.per_rad2_cm),
+        };
+        let (least, greatest) = (self.least_angles_deg, self.greatest_angles_deg);
+        let fascicle_length = table.fascicle_length_cm * 1e-2;
+        let fibers = self.fiber.iter().map(|fiber| {
+            let mut fiber = coefficients::fiber(&fiber.preset, fiber.fraction).expect("a preset");
+            fiber.units = UnitSizes::Default.shares(fiber.fiber_type.rank, self.units);
+            fiber
+        });
+        ArmMuscle {
+            name: table.name.clone(),
+            group: table.group,
+            path,
+            muscle: Muscle {
+                // As much of it as makes the greatest force.
+                mass: table.max_isometric_force_n * elements.density * fascicle_length
+                    / elements.specific_tension,
+                L_ce0: fascicle_length,
+                // The tendon is slack at LrT of its optimal length.
+                L_se0: table.tendon_slack_length_cm * 1e-2 / elements.LrT,
+                L_mt_max: path.longest(least.map(f64::to_radians), greatest.map(f64::to_radians)),
+                U_r: self.recruitment_saturation,
+                elements,
+                fibers: fibers.collect(),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link;
+
+    #[test]
+    fn muscles_are_valid_and_as_strong_as_published() {
+        let arm = Arm::built_in();
+        let forces = [838.0, 1207.0, 1422.0, 1549.0, 414.0, 603.0];
+        assert_eq!(arm.muscles.len(), forces.len());
+        for (muscle, force) in arm.muscles.iter().zip(forces) {
+            assert_eq!(link::validate(&muscle.muscle), Ok(()), "{}", muscle.name);
+            assert!((muscle.muscle.f0() - force).abs() < 1e-9, "{}", muscle.name);
+        }
+    }
+
+    #[test]
+    fn flexors_flex_and_extensors_extend_what_they_cross() {
+        let arm = Arm::built_in();
+        for ArmMuscle { name, group, path, .. } in &arm.muscles {
+            for angles in [arm.least_angles, [0.8, 1.6], arm.greatest_angles] {
+                let arms = path.moment_arms(angles);
+                let crossed = match group {
+                    Group::Shoulder => [true, false],
+                    Group::Elbow => [false, true],
+                    Group::Biarticular => [true, true],
+                };
+                for (arm, crosses) in arms.into_iter().zip(crossed) {
+                    assert_eq!(arm != 0.0, crosses, "{name}");
+                    assert!(!crosses || (arm > 0.0) == name.ends_with("flexor"), "{name}: {arm} m");
+                }
+            }
+        }
+    }
+
+    /// The longest path against a walk over all angles, and the moment arms against differences.
+    #[test]
+    fn paths_and_moment_arms_belong_together() {
+        let arm = Arm::built_in();
+        let steps = 200;
+        for ArmMuscle { name, path, muscle, .. } in &arm.muscles {
+            let mut longest = 0.0_f64;
+            for step in 0..(steps + 1) * (steps + 1) {
+                let share = [step / (steps + 1), step % (steps + 1)]
+                    .map(|step| f64::from(step) / f64::from(steps));
+                let angles = [0, 1].map(|joint| {
+                    let (least, most) = (arm.least_angles[joint], arm.greatest_angles[joint]);
+                    least + share[joint] * (most - least)
+                });
+                longest = longest.max(path.length(angles));
+                let arms = path.moment_arms(angles);
+                for joint in [0, 1] {
+                    let beside = |by: f64| {
+                        let mut angles = angles;
+                        angles[joint] += by;
+                        path.length(angles)
+                    };
+                    let slope = (beside(1e-4) - beside(-1e-4)) / 2e-4;
+                    assert!((arms[joint] + slope).abs() < 1e-9, "{name}: {} m", arms[joint]);
+                }
+            }
+            let excess = muscle.L_mt_max - longest;
+            assert!((-1e-12..1e-6).contains(&excess), "{name}: {excess} m");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! `vm arm`.
+
+use super::{ModeName, print};
+use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
+use crate::engine::{Arithmetic, status_names};
+use crate::figures;
+use crate::trace::write_atomically;
+use clap::Args;
+use comfy_table::{Table, presets};
+use std::error::Error;
+use std::path::PathBuf;
+
+/// `vm arm`: the planar arm under constant activations.
+#[derive(Debug, Args)]
+pub struct ArmArgs {
+    /// How the muscles are recruited.
+    #[arg(long, value_enum, default_value = "continuous")]
+    mode: ModeName,
+    /// What they are computed in.
+    #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
+    arithmetic: Arithmetic,
+    /// Activation of both shoulder muscles, 0 to 1.
+    #[arg(long, default_value_t = figures::ARM_ACTIVATIONS.shoulder)]
+    shoulder: f64,
+    /// Activation of both elbow muscles, 0 to 1.
+    #[arg(long, default_value_t = figures::ARM_ACTIVATIONS.elbow)]
+    elbow: f64,
+    /// Activation of both biarticular muscles, 0 to 1.
+    #[arg(long, default_value_t = figures::ARM_ACTIVATIONS.biarticular)]
+    biarticular: f64,
+    /// Stimulation frequency in mode fes, pps.
+    #[arg(long, default_value_t = 20.0)]
+    stimulation: f64,
+    /// Angles of shoulder and elbow to start from, degrees.
+    #[arg(long, num_args = 2, value_names = ["SHOULDER", "ELBOW"],
+          default_values_t = figures::ARM_START, allow_negative_numbers = true)]
+    start: Vec<f64>,
+    /// s.
+    #[arg(long, default_value_t = figures::ARM_DURATION)]
+    duration: f64,
+    /// Tick, ms.
+    #[arg(long, default_value_t = 1.0)]
+    tick: f64,
+    /// Where every tick goes, in CSV.
+    #[arg(long)]
+    output: Option<PathBuf>,
+}
+
+/// Runs the arm and says what became of it.
+pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
+    let arm = Arm::built_in();
+    let drive = Drive {
+        mode: args.mode.into(),
+        arithmetic: args.arithmetic,
+        activations: Activations {
+            shoulder: args.shoulder,
+            elbow: args.elbow,
+            biarticular: args.biarticular,
+        },
+        stimulation_frequency: args.stimulation,
+        start: [args.start[0].to_radians(), args.start[1].to_radians()],
+        time_step: args.tick * 1e-3,
+        duration: args.duration,
+    };
+    let moments = arm::run(&arm, &drive)?;
+    if let Some(path) = &args.output {
+        write_atomically(path, &table(&arm, &moments)?)?;
+    }
+    let outcome = Outcome::of(&moments, drive.time_step);
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "joint",
+        "final angle, deg",
+        "largest late swing, deg",
+        "fastest growth, 1/s",
+    ]);
+    for (index, joint) in ["shoulder", "elbow"].into_iter().enumerate() {
+        table.add_row([
+            joint.to_owned(),
+            format!("{:.3}", outcome.final_angles[index]),
+            format!("{:.4}", outcome.late_swing[index]),
+            format!("{:+.2}", outcome.growth[index]),
+        ]);
+    }
+    print(&table)?;
+    print(&format!(
+        "{}; energy error {:.1e} of the turnover; status {}",
+        if outcome.settles() { "settles" } else { "does not settle" },
+        outcome.energy_error,
+        status_names(outcome.status),
+    ))?;
+    Ok(())
+}
+
+/// Every tick as CSV.
+fn table(arm: &Arm, moments: &[Moment]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let columns = ["t_s", "shoulder_deg", "elbow_deg", "shoulder_rad_per_s", "elbow_rad_per_s"];
+    let mut header: Vec<String> = columns.map(str::to_owned).to_vec();
+    header.extend(arm.muscles.iter().map(|muscle| format!("{}_n", muscle.name.replace(' ', "_"))));
+    header.extend(["kinetic_energy_j", "work_j", "status"].map(str::to_owned));
+    writer.write_record(&header)?;
+    for moment in moments {
+        let numbers = [moment.time].into_iter();
+        let numbers = numbers
+            .chain(moment.angles.map(f64::to_degrees))
+            .chain(moment.velocities)
+            .chain(moment.forces.iter().copied())
+            .chain([moment.kinetic_energy, moment.work]);
+        let mut cells: Vec<String> = numbers.map(|number| format!("{number:.9}")).collect();
+        cells.push(status_names(moment.status));
+        writer.write_record(&cells)?;
+    }
+    Ok(writer.into_inner()?)
+}

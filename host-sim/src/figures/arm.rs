@@ -1,0 +1,92 @@
+//! Figure 3: the planar arm under constant activations, with and without effective length.
+
+use super::chart::{Chart, Panel};
+use super::{FiguresError, Folder, TIME_STEP};
+use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
+use crate::engine::Arithmetic;
+use crate::reference::Mode;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// The paper's activations.
+pub const ACTIVATIONS: Activations = Activations { shoulder: 0.9, elbow: 0.4, biarticular: 0.0 };
+/// Where the arm starts, degrees: half way forward, elbow bent at a right angle.
+pub const START: [f64; 2] = [45.0, 90.0];
+/// s.
+pub const DURATION: f64 = 5.0;
+
+const MODES: [(&str, Mode); 3] = [
+    ("continuous", Mode::Continuous),
+    ("discrete 3 + 3", Mode::Discrete),
+    ("discrete 3 + 3, effective length", Mode::DiscreteEffectiveLength),
+];
+
+/// Angles of shoulder and elbow, degrees.
+#[derive(Debug, Serialize)]
+struct Row {
+    t_s: f64,
+    continuous_shoulder_deg: f64,
+    continuous_elbow_deg: f64,
+    discrete_shoulder_deg: f64,
+    discrete_elbow_deg: f64,
+    effective_length_shoulder_deg: f64,
+    effective_length_elbow_deg: f64,
+}
+
+/// What became of the arm: with continuous recruitment, with discrete, and with effective length.
+pub(super) fn make(
+    folder: &Folder<'_>,
+    arithmetic: Arithmetic,
+) -> Result<[Outcome; 3], FiguresError> {
+    let arm = Arm::built_in();
+    let runs: Vec<Vec<Moment>> = MODES
+        .par_iter()
+        .map(|&(_, mode)| {
+            let drive = Drive {
+                mode,
+                arithmetic,
+                activations: ACTIVATIONS,
+                stimulation_frequency: 0.0,
+                start: START.map(f64::to_radians),
+                time_step: TIME_STEP,
+                duration: DURATION,
+            };
+            arm::run(&arm, &drive)
+        })
+        .collect::<Result<_, _>>()?;
+    let [continuous, discrete, effective] = [&runs[0], &runs[1], &runs[2]];
+    let degrees = |moment: &Moment, joint: usize| moment.angles[joint].to_degrees();
+    let rows: Vec<Row> = continuous
+        .iter()
+        .zip(discrete)
+        .zip(effective)
+        .map(|((a, b), c)| Row {
+            t_s: a.time,
+            continuous_shoulder_deg: degrees(a, 0),
+            continuous_elbow_deg: degrees(a, 1),
+            discrete_shoulder_deg: degrees(b, 0),
+            discrete_elbow_deg: degrees(b, 1),
+            effective_length_shoulder_deg: degrees(c, 0),
+            effective_length_elbow_deg: degrees(c, 1),
+        })
+        .collect();
+    folder.table("arm.csv", &rows)?;
+    let panel = |y, joint| Panel {
+        y,
+        lines: MODES
+            .iter()
+            .zip(&runs)
+            .map(|((name, _), run)| {
+                let points = run.iter().map(|moment| (moment.time, degrees(moment, joint)));
+                ((*name).to_owned(), points.collect())
+            })
+            .collect(),
+    };
+    let chart = Chart {
+        title: "Arm at constant activations: shoulder 0.9, elbow 0.4, biarticular 0",
+        x: "time (s)",
+        panels: vec![panel("shoulder angle (degrees)", 0), panel("elbow angle (degrees)", 1)],
+    };
+    folder.figure("arm.svg", &chart)?;
+    Ok([continuous, discrete, effective].map(|run| Outcome::of(run, TIME_STEP)))
+}

@@ -1,0 +1,115 @@
+//! Six muscles and a skeleton, coupled at every tick: energy is neither made nor lost, every arithmetic
+//! moves the arm as the reference does, and effective length does what the paper found.
+
+use host_sim::arm::{self, Arm, Drive, Moment, Outcome};
+use host_sim::engine::Arithmetic;
+use host_sim::figures::{ARM_ACTIVATIONS, ARM_DURATION, ARM_START};
+use host_sim::reference::Mode;
+
+const TIME_STEP: f64 = 1e-3;
+
+fn drive(mode: Mode, arithmetic: Arithmetic) -> Drive {
+    Drive {
+        mode,
+        arithmetic,
+        activations: ARM_ACTIVATIONS,
+        stimulation_frequency: 20.0,
+        start: ARM_START.map(f64::to_radians),
+        time_step: TIME_STEP,
+        duration: ARM_DURATION,
+    }
+}
+
+fn run(drive: &Drive) -> (Vec<Moment>, Outcome) {
+    let moments = arm::run(&Arm::built_in(), drive).expect("a run");
+    let outcome = Outcome::of(&moments, drive.time_step);
+    assert!(outcome.status.is_empty(), "{:?} {:?}", drive.mode, outcome.status);
+    (moments, outcome)
+}
+
+/// The largest difference of an angle, degrees.
+fn difference(one: &[Moment], other: &[Moment]) -> f64 {
+    let differences = one.iter().zip(other).flat_map(|(one, other)| {
+        [0, 1].map(|joint| (one.angles[joint] - other.angles[joint]).abs().to_degrees())
+    });
+    differences.fold(0.0, f64::max)
+}
+
+const MODES: [Mode; 4] =
+    [Mode::Continuous, Mode::Fes, Mode::Discrete, Mode::DiscreteEffectiveLength];
+const ARITHMETICS: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
+
+/// Kinetic energy is what muscles did over their paths (there is no friction and no gravity).
+#[test]
+fn energy_is_balanced() {
+    for mode in MODES {
+        for arithmetic in ARITHMETICS {
+            let (moments, outcome) = run(&drive(mode, arithmetic));
+            let turnover = moments.last().expect("a moment").turnover;
+            assert!(turnover > 10.0, "{turnover} J are worth balancing");
+            let error = outcome.energy_error;
+            assert!(error < 9e-8, "{mode:?} {arithmetic:?}: {error:e} of the turnover");
+        }
+    }
+}
+
+/// What is left of the balance is the coupling's: a quarter of it with half the tick.
+#[test]
+fn the_balance_is_of_second_order() {
+    let coarse = drive(Mode::Continuous, Arithmetic::F64);
+    let fine = Drive { time_step: TIME_STEP / 2.0, ..coarse };
+    let ratio = run(&coarse).1.energy_error / run(&fine).1.energy_error;
+    assert!((3.5..4.5).contains(&ratio), "{ratio}");
+}
+
+/// Over 5 s, in which every error of force has had its effect on where the arm is.
+#[test]
+fn the_arm_moves_as_with_the_reference() {
+    for mode in MODES {
+        let (reference, _) = run(&drive(mode, Arithmetic::Reference));
+        // Degrees. Under FES a strong pull starts at once; with effective length the arm is unstable, and
+        // differences grow with it.
+        let [of_f32, of_fixed] = match mode {
+            Mode::Continuous | Mode::Discrete => [6e-4, 3.8e-3],
+            Mode::Fes => [0.017, 0.017],
+            Mode::DiscreteEffectiveLength => [0.047, 0.1],
+        };
+        for (arithmetic, most) in [(Arithmetic::F32, of_f32), (Arithmetic::Fixed, of_fixed)] {
+            let (moments, _) = run(&drive(mode, arithmetic));
+            let degrees = difference(&moments, &reference);
+            assert!(degrees < most, "{mode:?} {arithmetic:?}: {degrees} degrees");
+        }
+    }
+}
+
+/// Figure 3: unstable with effective length, stable without, whatever it is computed in.
+#[test]
+fn effective_length_makes_the_arm_unstable() {
+    for arithmetic in ARITHMETICS {
+        for mode in MODES {
+            let (_, outcome) = run(&drive(mode, arithmetic));
+            let unstable = mode == Mode::DiscreteEffectiveLength;
+            assert_eq!(outcome.settles(), !unstable, "{mode:?} {arithmetic:?}: {outcome:?}");
+            // The elbow alone, again and again, long after it had come to rest.
+            assert_eq!(outcome.late_swing[1] > 5.0, unstable, "{mode:?} {arithmetic:?}");
+        }
+    }
+}
+
+#[test]
+fn bad_values_are_named() {
+    let refuse = |change: &dyn Fn(&mut Drive)| {
+        let mut drive = drive(Mode::Continuous, Arithmetic::F32);
+        change(&mut drive);
+        arm::run(&Arm::built_in(), &drive).expect_err("refused").to_string()
+    };
+    assert_eq!(
+        refuse(&|drive| drive.activations.elbow = 1.4),
+        "elbow activation = 1.4: must be 0 to 1"
+    );
+    let message = refuse(&|drive| drive.start[1] = 3.0);
+    assert!(message.starts_with("elbow angle = 171.88"), "{message}");
+    assert!(message.ends_with("must be 0 to 155 degrees"), "{message}");
+    assert!(refuse(&|drive| drive.time_step = f64::NAN).starts_with("time step = NaN: must be"));
+    assert!(refuse(&|drive| drive.duration = 1e9).starts_with("duration = 1000000000: must be"));
+}
