@@ -27,7 +27,7 @@ impl<S: Scalar> Inputs<S> for Scenario {
         numbers(tick).map(|input| Input {
             activation: S::from_f64(input.activation.into()),
             path_length: S::path_length(input.path_length.into()),
-            stimulation_frequency: S::frequency(input.stimulation_frequency.into()),
+            stimulation_frequency: S::quantity(input.stimulation_frequency.into()),
         })
     }
 }

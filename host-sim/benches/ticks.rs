@@ -21,7 +21,7 @@ fn input<S: vm::Scalar>(tick: u32) -> vm::Input<S> {
     vm::Input {
         activation: S::from_f64(activation(tick)),
         path_length: S::path_length(PATH),
-        stimulation_frequency: S::frequency(20.0),
+        stimulation_frequency: S::quantity(20.0),
     }
 }
 

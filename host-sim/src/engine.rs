@@ -155,10 +155,10 @@ impl Rest<'_> {
         with_type_count!(
             self.muscle,
             N => match mode {
-                Mode::Continuous => self.of_mode::<S, vm::NaturalContinuous, N>(&()),
-                Mode::Fes => self.of_mode::<S, vm::IntramuscularFes, N>(&()),
-                Mode::Discrete => self.discrete::<S, vm::FascicleLength, N>(),
-                Mode::DiscreteEffectiveLength => self.discrete::<S, vm::EffectiveLength, N>(),
+                Mode::Continuous => self.of_mode::<S, vm::NaturalContinuous, N>(mode, &()),
+                Mode::Fes => self.of_mode::<S, vm::IntramuscularFes, N>(mode, &()),
+                Mode::Discrete => self.discrete::<S, vm::FascicleLength, N>(mode),
+                Mode::DiscreteEffectiveLength => self.discrete::<S, vm::EffectiveLength, N>(mode),
             },
             else Err(RunError::TypeCount(self.muscle.fibers.len()))
         )
@@ -167,32 +167,43 @@ impl Rest<'_> {
     /// A mode of motor units, with room for at least as many as the muscle has.
     fn discrete<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize>(
         &self,
+        mode: Mode,
     ) -> Result<Box<dyn Running>, RunError> {
         let count = count_units(self.muscle)?;
         match count {
-            0..=8 => self.of_units::<S, A, N, 8>(),
-            9..=64 => self.of_units::<S, A, N, 64>(),
-            65..=MOST_UNITS => self.of_units::<S, A, N, MOST_UNITS>(),
+            0..=8 => self.of_units::<S, A, N, 8>(mode),
+            9..=64 => self.of_units::<S, A, N, 64>(mode),
+            65..=MOST_UNITS => self.of_units::<S, A, N, MOST_UNITS>(mode),
             _ => Err(RunError::UnitCount(count)),
         }
     }
 
     fn of_units<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize, const UNITS: usize>(
         &self,
+        mode: Mode,
     ) -> Result<Box<dyn Running>, RunError> {
         let units = link::motor_units::<N, UNITS>(self.muscle)?;
-        self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(&units)
+        self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(mode, &units)
     }
 
     fn of_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
         &self,
+        mode: Mode,
         units: &R::Units,
     ) -> Result<Box<dyn Running>, RunError> {
         let step = vm::TimeStep::from_seconds(self.time_step)?;
         let params = link::params(self.muscle);
         let muscle = vm::Muscle::<S, R, N>::build_with_units(&params, units, step)?;
         let state = muscle.rest(S::path_length(self.path_length))?;
-        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state }))
+        let fatigue = self.muscle.fatigue.as_ref().map(link::fatigue_params);
+        let tiring = fatigue
+            .map(|params| {
+                let fatigue = vm::Fatigue::<S>::build(&params, step)?;
+                let stimulated = mode == Mode::Fes;
+                Ok::<_, RunError>(Tiring { fatigue, state: fatigue.rested(), stimulated })
+            })
+            .transpose()?;
+        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, tiring }))
     }
 }
 
@@ -216,19 +227,49 @@ impl Running for Simulation {
 struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
     muscle: Rc<vm::Muscle<S, R, N>>,
     state: vm::State<S, R, N>,
+    tiring: Option<Tiring<S>>,
+}
+
+/// How tired a muscle is.
+#[derive(Clone, Copy)]
+struct Tiring<S: vm::Scalar> {
+    fatigue: vm::Fatigue<S>,
+    state: vm::FatigueState<S>,
+    /// By stimulation, whose frequency counts.
+    stimulated: bool,
+}
+
+/// Natural firing tires as the fastest stimulation does, pps.
+const NATURAL: f64 = 100.0;
+
+impl<S: vm::Scalar> Tiring<S> {
+    fn advance(&mut self, input: vm::Input<S>) -> S {
+        let natural = S::quantity(NATURAL);
+        let frequency = if self.stimulated { input.stimulation_frequency } else { natural };
+        self.fatigue.advance(&mut self.state, input.activation, frequency)
+    }
 }
 
 impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Stepped<S, R, N> {
     fn row(&self) -> Row {
-        row(self.muscle.observe(&self.state))
+        let output = self.muscle.observe(&self.state);
+        row(match &self.tiring {
+            Some(tiring) => output.weakened(tiring.state.fitness()),
+            None => output,
+        })
     }
 
     fn step(&mut self, input: Input) -> Result<Row, RunError> {
-        Ok(row(self.muscle.step(&mut self.state, scaled(&input))))
+        let input = scaled(&input);
+        let output = self.muscle.step(&mut self.state, input);
+        Ok(row(match &mut self.tiring {
+            Some(tiring) => output.weakened(tiring.advance(input)),
+            None => output,
+        }))
     }
 
     fn fork(&self) -> Box<dyn Running> {
-        Box::new(Self { muscle: Rc::clone(&self.muscle), state: self.state })
+        Box::new(Self { muscle: Rc::clone(&self.muscle), ..*self })
     }
 
     fn watch(&self, watch: &mut dyn FnMut(u64)) {
@@ -251,7 +292,7 @@ fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {
     vm::Input {
         activation: S::from_f64(input.activation),
         path_length: S::path_length(input.path_length),
-        stimulation_frequency: S::frequency(input.stimulation_frequency),
+        stimulation_frequency: S::quantity(input.stimulation_frequency),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The link from a muscle in the paper's symbols to the parameters of `vm-nostd`.
 
-use crate::reference::{Elements, FiberType, Muscle};
+use crate::reference::{Elements, Fatigue, FiberType, Muscle};
 use vm_nostd as vm;
 
 /// The most fibre types that a muscle can have here; in firmware the number is free.
@@ -57,7 +57,10 @@ pub(crate) use with_type_count;
 pub fn validate(muscle: &Muscle) -> Result<(), Refusal> {
     with_type_count!(
         muscle,
-        N => params::<N>(muscle).validate().map_err(refusal),
+        N => params::<N>(muscle)
+            .validate()
+            .and_then(|()| muscle.fatigue.as_ref().map_or(Ok(()), |f| fatigue_params(f).validate()))
+            .map_err(refusal),
         else Err(Refusal {
             fiber: None,
             key: "fiber".to_owned(),
@@ -119,6 +122,16 @@ pub fn element_params(e: &Elements) -> vm::ElementParams {
     }
 }
 
+/// How a muscle tires.
+pub fn fatigue_params(f: &Fatigue) -> vm::FatigueParams {
+    vm::FatigueParams {
+        fatigue_time: f.T_fat,
+        recovery_time: f.T_rec,
+        least_fitness: f.fit_min,
+        frequency_dependence: f.beta,
+    }
+}
+
 /// A fibre type.
 pub fn fiber_type(t: &FiberType) -> vm::FiberType {
     vm::FiberType {
@@ -161,6 +174,10 @@ const KEYS: &[(&str, &str, f64)] = &[
     ("tendon_length", "tendon_length_cm", 1e2),
     ("max_path_length", "max_path_length_cm", 1e2),
     ("recruitment_saturation", "recruitment_saturation", 1.0),
+    ("fatigue_time", "fatigue.T_fat_s", 1.0),
+    ("recovery_time", "fatigue.T_rec_s", 1.0),
+    ("least_fitness", "fatigue.fit_min", 1.0),
+    ("frequency_dependence", "fatigue.beta", 1.0),
     ("fraction", "fraction", 1.0),
     ("rank", "rank", 1.0),
     ("half_force_frequency", "f05_pps", 1.0),

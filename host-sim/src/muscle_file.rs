@@ -3,7 +3,7 @@
 use crate::coefficients::{self, Row, RowError};
 use crate::engine::MOST_UNITS;
 use crate::link;
-use crate::reference::{Fiber, Muscle, UnitSizes};
+use crate::reference::{Fatigue, Fiber, Muscle, UnitSizes};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -56,6 +56,29 @@ struct MuscleFile {
     coefficients: String,
     #[serde(default)]
     fiber: Vec<FiberTable>,
+    fatigue: Option<FatigueTable>,
+}
+
+/// How the muscle tires; without this table it does not.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)] // the paper's symbols
+struct FatigueTable {
+    T_fat_s: f64,
+    T_rec_s: f64,
+    fit_min: f64,
+    beta: f64,
+}
+
+impl From<FatigueTable> for Fatigue {
+    fn from(table: FatigueTable) -> Self {
+        Self {
+            T_fat: table.T_fat_s,
+            T_rec: table.T_rec_s,
+            fit_min: table.fit_min,
+            beta: table.beta,
+        }
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -145,6 +168,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         U_r: file.recruitment_saturation,
         elements,
         fibers: order.iter().map(|&index| fibers[index].clone()).collect(),
+        fatigue: file.fatigue.map(Fatigue::from),
     };
     let units: usize = muscle.fibers.iter().map(|fiber| fiber.units.len()).sum();
     if units > MOST_UNITS {

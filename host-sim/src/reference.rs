@@ -6,11 +6,13 @@
 //! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184.
 
 mod elements;
+mod fatigue;
 mod muscle;
 mod recruitment;
 mod simulation;
 mod units;
 
+pub use fatigue::Fatigue;
 pub use muscle::{Elements, Fiber, FiberType, Muscle, Sag, Yielding};
 pub use recruitment::Mode;
 pub use simulation::{Input, Sample, Simulation, SolverError};

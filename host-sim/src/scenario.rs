@@ -2,7 +2,7 @@
 //! harder in one way or another.
 
 use crate::coefficients;
-use crate::reference::{Fiber, Input, Mode, Muscle, UnitSizes};
+use crate::reference::{Fatigue, Fiber, Input, Mode, Muscle, UnitSizes};
 use crate::trace::{self, InputTrace};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -35,6 +35,7 @@ pub fn paper_muscle() -> Muscle {
         U_r: 0.8,
         elements: coefficients::elements(coefficients::DEFAULT_SET).expect("the default set"),
         fibers: vec![preset("paper-table-1/slow", 0.6), preset("paper-table-1/fast", 0.4)],
+        fatigue: None,
     }
 }
 
@@ -62,6 +63,7 @@ fn hand_muscle() -> Muscle {
             preset("human-vm4/slow", 0.45),
             preset("human-vm4/fast", 0.35),
         ],
+        fatigue: None,
     }
 }
 
@@ -75,11 +77,18 @@ fn feline_muscle() -> Muscle {
         U_r: 0.8,
         elements: coefficients::elements("feline-vm4").expect("a published set"),
         fibers: vec![preset("feline-vm4/fast", 1.0)],
+        fatigue: None,
     }
 }
 
 fn preset(name: &str, fraction: f64) -> Fiber {
     coefficients::fiber(name, fraction).expect("a published preset")
+}
+
+/// The paper's muscle, tiring as a paralysed quadriceps does.
+fn tiring_muscle() -> Muscle {
+    let fatigue = Fatigue { T_fat: 18.0, T_rec: 30.0, fit_min: 0.0, beta: 0.6 };
+    Muscle { fatigue: Some(fatigue), ..paper_muscle() }
 }
 
 /// One of the vectors in `host-sim/data/vectors`.
@@ -169,6 +178,11 @@ pub fn all() -> Vec<Scenario> {
             _ => Status::empty(),
         };
         scenarios.push(Scenario { flags, ..on_off });
+        scenarios.push(generated("fatigue", tiring_muscle(), mode, 12.0, |t| {
+            // Two long holds at different strengths and a pause; faster stimulation in the second.
+            let on = smooth(t / 0.3) - smooth((t - 5.0) / 0.5) + 0.6 * smooth((t - 8.0) / 0.3);
+            [on.max(0.0), PATH, 20.0 + 30.0 * smooth((t - 8.0) / 0.5)]
+        }));
         scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
             // Off is off: what rounding leaves of a sine's 0 would count as stimulated under FES,
             // and no fixed-point number could hold it.

@@ -60,6 +60,45 @@ fn vm(arguments: &[&Path]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vm")).args(arguments).output().expect("vm runs")
 }
 
+/// A row of inputs per tick: full activation at 40 pps.
+fn stimulated(ticks: usize) -> String {
+    let row = |tick: usize| format!("{},1,0.16,40\n", tick as f64 * 1e-3);
+    rows(&(0..=ticks).map(row).collect::<String>())
+}
+
+/// Column `force_n` of an output.
+fn forces(bench: &Bench) -> Vec<f64> {
+    let text = fs::read_to_string(bench.path("out.csv")).expect("an output file");
+    let force = |line: &str| line.split(',').nth(1).and_then(|cell| cell.parse().ok());
+    text.lines().skip(1).map(|line| force(line).expect("a force")).collect()
+}
+
+/// Ten seconds at 40 pps, from the equation: λ = 0.4 + 0.6 · 0.16 = 0.496.
+#[test]
+fn a_muscle_tires_where_its_file_says_so() {
+    let table = "\n[fatigue]\nT_fat_s = 18\nT_rec_s = 30\nfit_min = 0\nbeta = 0.6\n";
+    for arithmetic in ["reference", "f32", "fixed"] {
+        let fresh = Bench::new(MUSCLE, &stimulated(10_000));
+        let tired = Bench::new(&format!("{MUSCLE}{table}"), &stimulated(10_000));
+        for bench in [&fresh, &tired] {
+            assert!(bench.run("fes", arithmetic).status.success());
+        }
+        let (tiring, recovering) = (0.496 / 18.0, 0.504 / 30.0);
+        let (rate, end) = (tiring + recovering, recovering / (tiring + recovering));
+        for (tick, (tired, fresh)) in forces(&tired).into_iter().zip(forces(&fresh)).enumerate() {
+            let fitness = end + (1.0 - end) * (-rate * tick as f64 * 1e-3).exp();
+            // Forces are told to 1 mN in fixed point.
+            let bound = 1e-5 * fresh + 1.6e-3;
+            assert!((tired - fitness * fresh).abs() < bound, "{arithmetic} {tick}: {tired} N");
+        }
+    }
+    let never = table.replace("T_fat_s = 18", "T_fat_s = 0");
+    let bench = Bench::new(&format!("{MUSCLE}{never}"), &stimulated(10));
+    bench.refused(&["m.toml", "fatigue.T_fat_s = 0", "between 1 and 1000"]);
+    let unknown = table.replace("beta", "bete");
+    Bench::new(&format!("{MUSCLE}{unknown}"), &stimulated(10)).refused(&["m.toml", "bete"]);
+}
+
 /// A muscle file with a line replaced.
 fn muscle(line: &str, other: &str) -> String {
     assert!(MUSCLE.contains(line), "{line}");

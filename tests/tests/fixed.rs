@@ -32,7 +32,7 @@ fn after_ten_minutes<R: Recruitment<Fixed, 2, Units = ()>>(input: ReferenceInput
     let input = Input::<Fixed> {
         activation: Scalar::from_f64(input.activation),
         path_length: Fixed::path_length(input.path_length),
-        stimulation_frequency: <Fixed as Scalar>::frequency(input.stimulation_frequency),
+        stimulation_frequency: <Fixed as Scalar>::quantity(input.stimulation_frequency),
     };
     let mut state = muscle.rest(input.path_length).expect("a path in range");
     let mut force = 0;

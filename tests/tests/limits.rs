@@ -354,7 +354,7 @@ fn all_units_fire_as_fast_as_they_can_at_full_activation_wherever_rounding_puts_
         let muscle = DiscreteMuscle::<S, 2, UNITS>::build_with_units(params, &units, step);
         let muscle = muscle.expect("a valid muscle");
         let path_length = S::path_length(0.16);
-        let stimulation_frequency = S::frequency(0.0);
+        let stimulation_frequency = S::quantity(0.0);
         let input = Input { activation: S::ONE, path_length, stimulation_frequency };
         let mut state = muscle.rest(path_length).expect("in range");
         let force = (0..1000).map(|_| muscle.step(&mut state, input).force).last();

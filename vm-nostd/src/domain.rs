@@ -35,6 +35,8 @@ bitflags::bitflags! {
         /// The tendon is extended by more than the arithmetic can tell: its force was taken at
         /// the most that it can. Only in fixed point, and at no less than ten times F0.
         const TENDON_FORCE_LIMITED = 1 << 10;
+        /// No activation holds the force that was asked for: the answer is the nearest. Never set by a tick.
+        const FORCE_UNREACHABLE = 1 << 11;
     }
 }
 
@@ -81,7 +83,7 @@ impl<T: Copy + PartialOrd> Range<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Domain<S: Scalar> {
     pub(crate) activation: Range<S>,
-    pub(crate) stimulation_frequency: Range<S::Frequency>,
+    pub(crate) stimulation_frequency: Range<S::Quantity>,
     pub(crate) path_length: Range<S::PathLength>,
     /// Where the equations of the filaments hold, L_ce0.
     pub(crate) filaments: Range<S>,
@@ -100,7 +102,7 @@ impl<S: Scalar> Domain<S> {
         let longest = params.max_path_length / params.fascicle_length;
         Self {
             activation: Range::new((0.0, 1.0), S::from_f64),
-            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::frequency),
+            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::quantity),
             path_length: Range::new(params.path_domain(), S::path_length),
             filaments: Range::new(filaments, S::from_f64),
             shortening_velocity: S::from_f64(params.shortening_velocity()),
@@ -116,7 +118,7 @@ impl<S: Scalar> Domain<S> {
             &self.stimulation_frequency,
             input.stimulation_frequency,
             self.stimulation_frequency.least,
-            S::frequency_is_finite,
+            S::quantity_is_finite,
         );
         let (path_length, p) =
             admit_one(&self.path_length, input.path_length, path_before, S::path_is_finite);
@@ -129,7 +131,7 @@ impl<S: Scalar> Domain<S> {
 
 /// What was wrong with an input.
 #[derive(Clone, Copy)]
-enum Admission {
+pub(crate) enum Admission {
     AsIs,
     Clipped,
     NotFinite,
@@ -145,7 +147,8 @@ impl Admission {
     }
 }
 
-fn admit_one<T: Copy + PartialOrd>(
+/// A value as a range admits it, and what was wrong with it; `instead` is taken for not-a-number.
+pub(crate) fn admit_one<T: Copy + PartialOrd>(
     range: &Range<T>,
     value: T,
     instead: T,

@@ -15,6 +15,7 @@ mod contraction;
 mod domain;
 mod error;
 mod excitation;
+mod fatigue;
 mod force_length;
 mod force_velocity;
 mod lag;
@@ -25,11 +26,13 @@ mod params;
 mod passive;
 mod presets;
 mod recruitment;
+mod recruitment_curve;
 mod sag;
 #[cfg(test)]
 mod saturation;
 mod scalar;
 mod state;
+mod steady;
 mod tendon;
 mod time_step;
 mod units;
@@ -40,6 +43,7 @@ pub use bank::{Bank, BankFull, BankedMuscle};
 pub use domain::Status;
 pub use error::{Limit, ParameterError};
 pub use excitation::ExcitationParams;
+pub use fatigue::{Fatigue, FatigueParams, FatigueState};
 pub use force_length::ForceLengthParams;
 pub use force_velocity::ForceVelocityParams;
 pub use muscle::{
@@ -54,10 +58,12 @@ pub use recruitment::{
     EffectiveLength, FascicleLength, IntramuscularFes, MotorUnits, NaturalContinuous,
     NaturalDiscrete, Recruitment, UnitSizes,
 };
+pub use recruitment_curve::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
 pub use sag::SagParams;
 pub use scalar::Scalar;
 pub use scalar::fixed::Fixed;
 pub use state::{RestoreError, State};
+pub use steady::{Steady, SteadyFes};
 pub use tendon::TendonParams;
 pub use time_step::TimeStep;
 pub use yielding::YieldParams;

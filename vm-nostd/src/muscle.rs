@@ -29,7 +29,7 @@ pub struct Input<S: Scalar> {
     /// to have changed linearly since the tick before.
     pub path_length: S::PathLength,
     /// Stimulation frequency f_stim, pps, 0..500, in force during the tick (FES only).
-    pub stimulation_frequency: S::Frequency,
+    pub stimulation_frequency: S::Quantity,
 }
 
 /// What one tick yields.

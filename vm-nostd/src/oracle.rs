@@ -377,7 +377,7 @@ fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
         let input = Input {
             activation: S::from_f64(activation),
             path_length: path,
-            stimulation_frequency: S::frequency(0.0),
+            stimulation_frequency: S::quantity(0.0),
         };
         let force = (0..3000).map(|_| muscle.step(&mut state, input).force).last();
         S::newtons(force.unwrap()) / S::newtons(muscle.max_isometric_force())

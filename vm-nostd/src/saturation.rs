@@ -68,7 +68,7 @@ fn unflagged<R: Recruitment<Fixed, 2>>(params: &MuscleParams<2>, units: &R::Unit
             let input = Input {
                 activation: Fixed::from_f64(activation),
                 path_length: Fixed::path_length(path),
-                stimulation_frequency: <Fixed as Scalar>::frequency(frequency),
+                stimulation_frequency: <Fixed as Scalar>::quantity(frequency),
             };
             saturations::take();
             let output = muscle.step(&mut state, input);

@@ -43,8 +43,9 @@ pub trait Scalar:
     type Share: Copy + Debug;
     /// A musculotendon path length: m in floating point, µm in fixed point.
     type PathLength: Copy + Debug + PartialEq + PartialOrd;
-    /// A stimulation frequency, pps.
-    type Frequency: Copy + Debug + PartialEq + PartialOrd;
+    /// What firmware sets or measures, in a unit of its own: a stimulation frequency in pps, a pulse's
+    /// amplitude in mA, its width in µs.
+    type Quantity: Copy + Debug + PartialEq + PartialOrd;
     /// A tendon force: N in floating point, mN in fixed point.
     type Force: Copy + Debug + PartialEq + PartialOrd;
 
@@ -150,19 +151,31 @@ pub trait Scalar:
     /// The path length whose word is `bits`.
     fn path_from_bits(bits: Self::Bits) -> Self::PathLength;
 
-    /// The frequency nearest to one in pps. Not used in a tick.
-    fn frequency(pps: f64) -> Self::Frequency;
+    /// The quantity nearest to one in its unit. Not used in a tick.
+    fn quantity(value: f64) -> Self::Quantity;
+    /// A quantity in its unit, exactly.
+    fn quantity_value(quantity: Self::Quantity) -> f64;
     /// Neither infinite nor not-a-number.
-    fn frequency_is_finite(frequency: Self::Frequency) -> bool;
-    /// The factor that turns frequencies into numbers: `value` per pps.
-    fn per_pps(value: f64) -> Self::Factor;
-    /// A frequency times a factor per pps.
-    fn of_frequency(frequency: Self::Frequency, per_pps: &Self::Factor) -> Self;
+    fn quantity_is_finite(quantity: Self::Quantity) -> bool;
+    /// The factor that turns quantities into numbers: `value` per unit.
+    fn per_quantity(value: f64) -> Self::Factor;
+    /// A quantity times a factor per unit.
+    fn of_quantity(quantity: Self::Quantity, per_unit: &Self::Factor) -> Self;
+    /// The factor that turns numbers into quantities: so many units for 1.
+    fn quantity_factor(value: f64) -> Self::Factor;
+    /// A number times a factor as a quantity; saturated.
+    fn as_quantity(self, quantity_factor: &Self::Factor) -> Self::Quantity;
 
     /// The factor that turns forces relative to F0 (N) into forces.
     fn force_factor(newtons: f64) -> Self::Factor;
     /// A force relative to F0 as a force.
     fn force(self, force_factor: &Self::Factor) -> Self::Force;
+    /// The factor that turns forces into numbers: `value` per N.
+    fn per_newton(value: f64) -> Self::Factor;
+    /// A force times a factor per N.
+    fn of_force(force: Self::Force, per_newton: &Self::Factor) -> Self;
+    /// A force times a share, 0..1, of it.
+    fn of_share(self, force: Self::Force) -> Self::Force;
     /// The word of a force.
     fn force_bits(force: Self::Force) -> Self::Bits;
     /// A force in N, exactly or as nearly as `f64` has it.

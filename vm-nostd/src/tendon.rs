@@ -61,6 +61,30 @@ pub(crate) struct Pull<S> {
     pub(crate) saturated: bool,
 }
 
+/// The extension of a tendon that carries a force: kT (x + ln(1 - exp(-x))), x = F_se/(cT kT).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TendonInverse<S: Scalar> {
+    /// 1/(cT kT), per F0.
+    per_force: S::Factor,
+    /// kT L_se0/L_ce0.
+    toe: S::Factor,
+}
+
+impl<S: Scalar> TendonInverse<S> {
+    pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {
+        Self {
+            per_force: S::factor(1.0 / (params.stiffness * params.toe)),
+            toe: S::factor(params.toe * tendon_length / fascicle_length),
+        }
+    }
+
+    /// Extension (L_ce0) at a force (F0); for none, that of the least force there is.
+    pub(crate) fn extension(&self, force: S) -> S {
+        let toes = force.max(S::LEAST).scaled(&self.per_force).max(S::LEAST);
+        (toes + (S::ONE - (-toes).exp()).max(S::LEAST).ln()).scaled(&self.toe)
+    }
+}
+
 impl<S: Scalar> Tendon<S> {
     pub(crate) fn new(
         params: &TendonParams,

@@ -152,7 +152,7 @@ fn model_with<S: Scalar, R: Recruitment<S, 2>>(
             let input = Input {
                 activation: S::from_f64(input.activation.into()),
                 path_length: S::path_length(input.path_length.into()),
-                stimulation_frequency: S::frequency(input.stimulation_frequency.into()),
+                stimulation_frequency: S::quantity(input.stimulation_frequency.into()),
             };
             step(black_box(&muscle), state, black_box(input))
         },

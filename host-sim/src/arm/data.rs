@@ -155,6 +155,7 @@ impl File {
                 U_r: self.recruitment_saturation,
                 elements,
                 fibers: fibers.collect(),
+                fatigue: None,
             },
         }
     }

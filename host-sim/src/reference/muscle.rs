@@ -1,5 +1,7 @@
 //! A muscle in the paper's symbols and units of choice (seconds, metres, kilograms).
 
+use super::fatigue::Fatigue;
+
 /// Coefficients of the elements that all fibre types share (`elements.csv`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)] // the paper's symbols
@@ -110,6 +112,8 @@ pub struct Muscle {
     pub elements: Elements,
     /// Fibre types, in order of rank.
     pub fibers: Vec<Fiber>,
+    /// How it tires, if it does.
+    pub fatigue: Option<Fatigue>,
 }
 
 impl Muscle {

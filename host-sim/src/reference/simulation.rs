@@ -68,6 +68,8 @@ pub struct Simulation {
     time_step: f64,
     state: DVector<f64>,
     path_length: f64,
+    /// fit, 1 where the muscle does not tire.
+    fitness: f64,
     first_step: f64,
     tick: u64,
 }
@@ -87,14 +89,26 @@ impl Simulation {
             state[at + S] = muscle.fibers[unit.fiber].fiber_type.sag.map_or(1.0, |sag| sag.aS1);
             state[at + L_EFF] = RESTING_L_EFF;
         }
-        Self { muscle, mode, units, time_step, state, path_length, first_step: 0.0, tick: 0 }
+        Self {
+            muscle,
+            mode,
+            units,
+            time_step,
+            state,
+            path_length,
+            fitness: 1.0,
+            first_step: 0.0,
+            tick: 0,
+        }
     }
 
     /// The state as a sample.
     pub fn sample(&self) -> Sample {
         let e = &self.muscle.elements;
         Sample {
-            force: self.muscle.f0() * element::tendon(e, self.tendon_length(self.path_length)),
+            force: self.fitness
+                * self.muscle.f0()
+                * element::tendon(e, self.tendon_length(self.path_length)),
             fascicle_length: self.state[L],
             fascicle_velocity: self.state[V],
         }
@@ -154,6 +168,12 @@ impl Simulation {
             self.state.clone_from(state);
         }
         self.path_length = input.path_length;
+        if let Some(fatigue) = &self.muscle.fatigue {
+            // Natural firing tires as the fastest stimulation does.
+            let frequency =
+                if self.mode == Mode::Fes { input.stimulation_frequency } else { f64::INFINITY };
+            self.fitness = fatigue.fitness(self.fitness, self.time_step, u, frequency);
+        }
         Ok(self.sample())
     }
 }

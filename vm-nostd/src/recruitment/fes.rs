@@ -58,7 +58,9 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             firing: S::from_f64(SagParams::FIRING),
             units: params.fibers.map(|fiber| Unit {
                 fraction: S::from_f64(fiber.fraction),
-                per_half_force_frequency: S::per_pps(1.0 / fiber.fiber_type.half_force_frequency),
+                per_half_force_frequency: S::per_quantity(
+                    1.0 / fiber.fiber_type.half_force_frequency,
+                ),
             }),
         })
     }
@@ -91,7 +93,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             recruited.iter_mut().zip(&self.units).zip(kept).zip(fibers).zip(moment.yieldings)
         {
             let frequency =
-                S::of_frequency(input.stimulation_frequency, &unit.per_half_force_frequency);
+                S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency);
             let before = kept.effective_frequency;
             let excited = fiber.excitation.advance(
                 (kept.intermediate_frequency, before),

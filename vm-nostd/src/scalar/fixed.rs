@@ -23,7 +23,7 @@ use number::ONE;
 /// Units of [`I23F9`] in a metre.
 const PATH_UNITS: f64 = 512e6;
 const UNITS: f64 = (1 << 24) as f64;
-const FREQUENCY_UNITS: f64 = (1 << 16) as f64;
+const QUANTITY_UNITS: f64 = (1 << 16) as f64;
 /// Q8.56 has 32 bits more behind the point than Q8.24.
 const SLOW_SHIFT: u32 = 32;
 
@@ -38,7 +38,7 @@ impl Scalar for Fixed {
     type Share = u32;
     /// µm, in steps of 2 nm, to 4.19 m.
     type PathLength = I23F9;
-    type Frequency = I16F16;
+    type Quantity = I16F16;
     /// mN.
     type Force = i32;
 
@@ -167,17 +167,26 @@ impl Scalar for Fixed {
         I23F9::from_bits(bits as i32)
     }
 
-    fn frequency(pps: f64) -> I16F16 {
-        I16F16::from_bits(nearest(pps * FREQUENCY_UNITS))
+    fn quantity(value: f64) -> I16F16 {
+        I16F16::from_bits(nearest(value * QUANTITY_UNITS))
     }
-    fn frequency_is_finite(_: I16F16) -> bool {
+    fn quantity_value(quantity: I16F16) -> f64 {
+        f64::from(quantity.to_bits()) / QUANTITY_UNITS
+    }
+    fn quantity_is_finite(_: I16F16) -> bool {
         true
     }
-    fn per_pps(value: f64) -> Factor {
-        Factor::new(value * UNITS / FREQUENCY_UNITS)
+    fn per_quantity(value: f64) -> Factor {
+        Factor::new(value * UNITS / QUANTITY_UNITS)
     }
-    fn of_frequency(frequency: I16F16, per_pps: &Factor) -> Self {
-        Self::from_bits(per_pps.times(frequency.to_bits()))
+    fn of_quantity(quantity: I16F16, per_unit: &Factor) -> Self {
+        Self::from_bits(per_unit.times(quantity.to_bits()))
+    }
+    fn quantity_factor(value: f64) -> Factor {
+        Factor::new(value * QUANTITY_UNITS / UNITS)
+    }
+    fn as_quantity(self, quantity_factor: &Factor) -> I16F16 {
+        I16F16::from_bits(quantity_factor.times(self.to_bits()))
     }
 
     fn force_factor(newtons: f64) -> Factor {
@@ -185,6 +194,15 @@ impl Scalar for Fixed {
     }
     fn force(self, force_factor: &Factor) -> i32 {
         force_factor.times(self.to_bits())
+    }
+    fn per_newton(value: f64) -> Factor {
+        Factor::new(value * UNITS * 1e-3)
+    }
+    fn of_force(force: i32, per_newton: &Factor) -> Self {
+        Self::from_bits(per_newton.times(force))
+    }
+    fn of_share(self, force: i32) -> i32 {
+        number::whole(number::exact(self.to_bits(), force), number::FRACTION)
     }
     fn force_bits(force: i32) -> u32 {
         force as u32

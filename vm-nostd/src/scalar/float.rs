@@ -19,7 +19,7 @@ macro_rules! float {
             type Slow = Self;
             type Share = Self;
             type PathLength = Self;
-            type Frequency = Self;
+            type Quantity = Self;
             type Force = Self;
 
             const ZERO: Self = 0.0;
@@ -142,17 +142,26 @@ macro_rules! float {
                 <$float>::from_bits(bits)
             }
 
-            fn frequency(pps: f64) -> Self {
-                pps as Self
-            }
-            fn frequency_is_finite(frequency: Self) -> bool {
-                frequency.is_finite()
-            }
-            fn per_pps(value: f64) -> Self {
+            fn quantity(value: f64) -> Self {
                 value as Self
             }
-            fn of_frequency(frequency: Self, per_pps: &Self) -> Self {
-                frequency * per_pps
+            fn quantity_value(quantity: Self) -> f64 {
+                f64::from(quantity)
+            }
+            fn quantity_is_finite(quantity: Self) -> bool {
+                quantity.is_finite()
+            }
+            fn per_quantity(value: f64) -> Self {
+                value as Self
+            }
+            fn of_quantity(quantity: Self, per_unit: &Self) -> Self {
+                quantity * per_unit
+            }
+            fn quantity_factor(value: f64) -> Self {
+                value as Self
+            }
+            fn as_quantity(self, quantity_factor: &Self) -> Self {
+                self * quantity_factor
             }
 
             fn force_factor(newtons: f64) -> Self {
@@ -160,6 +169,15 @@ macro_rules! float {
             }
             fn force(self, force_factor: &Self) -> Self {
                 self * force_factor
+            }
+            fn per_newton(value: f64) -> Self {
+                value as Self
+            }
+            fn of_force(force: Self, per_newton: &Self) -> Self {
+                force * per_newton
+            }
+            fn of_share(self, force: Self) -> Self {
+                self * force
             }
             fn force_bits(force: Self) -> Self::Bits {
                 force.to_bits()

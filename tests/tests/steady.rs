@@ -1,0 +1,177 @@
+//! The inverse under FES: the stimulation it names, held by the reference for seconds, makes the force that
+//! was asked for.
+
+use host_sim::engine::{self, Arithmetic};
+use host_sim::link;
+use host_sim::reference::{Input, Mode, Muscle};
+use host_sim::scenario::paper_muscle;
+use host_sim::trace::InputTrace;
+use proptest::prelude::*;
+use system_tests::muscles::{TYPES, config, muscles};
+use vm_nostd::{FesMuscle, Fixed, MuscleParams, Scalar, Status, Steady, SteadyFes, TimeStep};
+
+const PATHS: [f64; 4] = [0.13, 0.145, 0.16, 0.175];
+const FREQUENCIES: [f64; 3] = [8.0, 20.0, 45.0];
+/// As long as it takes to come to rest, s.
+const HELD: f64 = 4.0;
+
+/// The force (N) that the reference holds in the end.
+fn held(muscle: &Muscle, activation: f64, path_length: f64, stimulation_frequency: f64) -> f64 {
+    let input = Input { activation, path_length, stimulation_frequency };
+    let time_step = 2e-3;
+    let inputs = vec![input; (HELD / time_step) as usize];
+    let trace = InputTrace { start: 0.0, time_step, inputs };
+    let rows = engine::run(muscle, Mode::Fes, Arithmetic::Reference, &trace).expect("a run");
+    rows.last().expect("a row").0.force
+}
+
+fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Input<S> {
+    vm_nostd::Input {
+        activation: S::from_f64(activation),
+        path_length: S::path_length(path),
+        stimulation_frequency: S::quantity(frequency),
+    }
+}
+
+/// A force in N as an arithmetic has it.
+fn force<S: Scalar>(newtons: f64) -> S::Force {
+    S::ONE.force(&S::force_factor(newtons))
+}
+
+/// The largest errors, in % of F0: of the steady force, and of the force that the inverse gets.
+fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
+    let muscle = paper_muscle();
+    let f0 = muscle.f0();
+    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let (mut forward, mut inverse) = (0.0_f64, 0.0_f64);
+    for &(activation, path, frequency, reference) in references {
+        let found = steady.force(input(activation, path, frequency));
+        assert!(found.status.is_empty(), "{:?}", found.status);
+        forward = forward.max((S::newtons(found.force) - reference).abs());
+
+        let wanted = force::<S>(reference);
+        let (path_length, f) = (S::path_length(path), S::quantity(frequency));
+        let found = steady.activation_for(wanted, path_length, f);
+        if found.status.is_empty() {
+            let got = held(&muscle, found.activation.to_f64(), path, frequency);
+            inverse = inverse.max((got - reference).abs());
+        } else {
+            // At the ends of what can be reached, the nearest may be either side of it.
+            assert_eq!(found.status, Status::FORCE_UNREACHABLE);
+            assert!([0.0, 1.0].contains(&activation), "U {activation} {path} m {frequency} pps");
+            inverse = inverse.max((S::newtons(found.force) - reference).abs());
+        }
+    }
+    [forward, inverse].map(|newtons| 100.0 * newtons / f0)
+}
+
+#[test]
+fn the_reference_holds_the_force_that_was_asked_for() {
+    let muscle = paper_muscle();
+    let mut references = Vec::new();
+    for path in PATHS {
+        for frequency in FREQUENCIES {
+            for activation in [0.0, 0.05, 0.3, 0.6, 0.9, 1.0] {
+                let force = held(&muscle, activation, path, frequency);
+                references.push((activation, path, frequency, force));
+            }
+        }
+    }
+    let (single, fixed) = (errors::<f32>(&references), errors::<Fixed>(&references));
+    let within = |found: [f64; 2], most: [f64; 2]| found[0] <= most[0] && found[1] <= most[1];
+    assert!(within(single, [1.1e-4, 1e-4]), "{single:?}");
+    assert!(within(fixed, [1.9e-3, 1.9e-3]), "{fixed:?}");
+}
+
+/// Of any muscle: the force that a stimulation holds is held by the stimulation that its inverse names.
+fn there_and_back<S: Scalar>(
+    params: &MuscleParams<TYPES>,
+    (activation, path, frequency): (f64, f64, f64),
+    unit: f64,
+) -> Result<(), TestCaseError> {
+    // Fixed point refuses what it cannot hold.
+    let Ok(steady) = SteadyFes::<S, TYPES>::build(params) else { return Ok(()) };
+    let (shortest, longest) = params.path_domain();
+    let path = shortest + path * (longest - shortest);
+    let input = input::<S>(activation, path, frequency);
+    let there = steady.force(input);
+    let f0 = params.max_isometric_force();
+    prop_assert!((0.0..10.0 * f0).contains(&S::newtons(there.force)), "{:?}", there);
+    let back = steady.activation_for(there.force, input.path_length, input.stimulation_frequency);
+    let again = steady.force(vm_nostd::Input { activation: back.activation, ..input });
+    let difference = (S::newtons(again.force) - S::newtons(there.force)).abs();
+    // In fixed point a force is told to 1 mN, and the tendon's extension to 6e-8 L_ce0.
+    prop_assert!(difference <= unit * f0 + 2e-3, "{:e} F0 {:?} {:?}", difference / f0, there, back);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(2000))]
+
+    #[test]
+    fn forces_of_any_muscle_are_found_again(
+        params in muscles(),
+        activation in 0.0..=1.0_f64,
+        path in 0.0..=1.0_f64,
+        frequency in 1.0..80.0_f64,
+    ) {
+        there_and_back::<f32>(&params, (activation, path, frequency), 1e-5)?;
+        there_and_back::<Fixed>(&params, (activation, path, frequency), 6e-5)?;
+    }
+}
+
+/// What cannot be held is flagged, with the nearest that can.
+fn unreachable<S: Scalar>() {
+    let muscle = paper_muscle();
+    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let (path, frequency) = (S::path_length(0.16), S::quantity(20.0));
+    let newtons = |steady: Steady<S>| S::newtons(steady.force);
+    let nothing = steady.force(input(0.0, 0.16, 20.0));
+    let all = steady.force(input(1.0, 0.16, 20.0));
+    assert!(newtons(all) > 100.0 && newtons(nothing) < 1.0);
+    for (wanted, nearest) in [
+        (2.0 * newtons(all), all),
+        (1.001 * newtons(all), all),
+        (1e4, all),
+        (0.5 * newtons(nothing), nothing),
+        (0.0, nothing),
+        (-5.0, nothing),
+    ] {
+        let found = steady.activation_for(force::<S>(wanted), path, frequency);
+        assert_eq!(found.status, Status::FORCE_UNREACHABLE, "{wanted} N");
+        assert_eq!(Steady { status: Status::empty(), ..found }, nearest, "{wanted} N");
+    }
+    // Without stimulation nothing but the passive force is there.
+    let found = steady.activation_for(force::<S>(50.0), path, S::quantity(0.0));
+    assert_eq!(found.status, Status::FORCE_UNREACHABLE);
+    assert!(newtons(found) < 1.0);
+    // A path that cannot be is taken at its end, and flagged as in a tick.
+    let found = steady.activation_for(force::<S>(20.0), S::path_length(0.3), frequency);
+    assert!(found.status.contains(Status::PATH_LENGTH_CLIPPED));
+}
+
+#[test]
+fn unreachable_forces_are_flagged_with_the_nearest() {
+    unreachable::<f32>();
+    unreachable::<Fixed>();
+    let muscle = paper_muscle();
+    let steady = SteadyFes::<f32, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let found = steady.activation_for(f32::NAN, 0.16, 20.0);
+    assert_eq!(found.status, Status::FORCE_UNREACHABLE);
+    assert_eq!(found.activation, 0.0);
+}
+
+/// The model itself comes to rest where its steady state says.
+#[test]
+fn the_model_settles_in_its_steady_state() {
+    let params = link::params::<2>(&paper_muscle());
+    let muscle = FesMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("a muscle");
+    let steady = SteadyFes::<f32, 2>::build(&params).expect("a muscle");
+    for path in PATHS {
+        let input = input(0.45, path, 20.0);
+        let mut state = muscle.rest(path as f32).expect("a path");
+        let force = (0..4000).map(|_| muscle.step(&mut state, input).force).last();
+        let difference = (force.unwrap_or(f32::NAN) - steady.force(input).force).abs();
+        assert!(difference < 2e-5 * 266.0, "{path} m: {difference} N");
+    }
+}

@@ -1,0 +1,177 @@
+//! Fatigue and recovery of a stimulated muscle, as a factor on its force: fitness, 1 when rested.
+//!
+//! d fit/dt = (fit_min - fit) a λ/T_fat + (1 - fit)(1 - a λ)/T_rec,
+//! λ = 1 - β + β (f/100 pps)², and 1 from 100 pps on,
+//! a being the activation and f the stimulation frequency.
+//!
+//! Source: Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167; without dependence on frequency,
+//! Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is no part of Virtual Muscle: a muscle
+//! that is stepped without it keeps every bit.
+
+use crate::domain::{Range, admit_one};
+use crate::error::{ParameterError, within};
+use crate::muscle::Output;
+use crate::scalar::Scalar;
+use crate::scalar::float::one_minus_exp;
+use crate::time_step::TimeStep;
+
+/// From this frequency on, λ is 1; pps.
+const SATURATING_FREQUENCY: f64 = 100.0;
+
+/// How fast a muscle tires, and recovers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FatigueParams {
+    /// Time constant T_fat towards the least fitness at full activation and 100 pps, s; 1 to 1,000.
+    #[doc(alias = "T_fat")]
+    pub fatigue_time: f64,
+    /// Time constant T_rec of recovery at rest, s; 1 to 1,000.
+    #[doc(alias = "T_rec")]
+    pub recovery_time: f64,
+    /// Fitness fit_min that is left in the end; 0 to 1.
+    #[doc(alias = "fit_min")]
+    pub least_fitness: f64,
+    /// How much less slow stimulation tires β; 0 (as much as fast) to 1.
+    #[doc(alias = "beta")]
+    pub frequency_dependence: f64,
+}
+
+impl FatigueParams {
+    /// The paralysed human quadriceps of Riener, Quintern & Schmidt (1996). Fatigue differs between
+    /// muscles, patients and weeks of training more than any other parameter here: identify it.
+    pub const QUADRICEPS: Self = Self {
+        fatigue_time: 18.0,
+        recovery_time: 30.0,
+        least_fitness: 0.0,
+        frequency_dependence: 0.6,
+    };
+
+    /// Whether a muscle can tire like that; the error names the field, its value and the limit it broke.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        within("fatigue_time", self.fatigue_time, 1.0, 1000.0)?;
+        within("recovery_time", self.recovery_time, 1.0, 1000.0)?;
+        within("least_fitness", self.least_fitness, 0.0, 1.0)?;
+        within("frequency_dependence", self.frequency_dependence, 0.0, 1.0)
+    }
+}
+
+/// How tired a muscle is: plain data, to be copied and saved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FatigueState<S: Scalar> {
+    /// Most of fit, in whole steps.
+    steps: S,
+    /// The rest of it, within a step either way: at 1, `f32` is too coarse for what a tick changes.
+    rest: S::Slow,
+}
+
+impl<S: Scalar> FatigueState<S> {
+    /// Fitness fit, 0..1.
+    pub fn fitness(&self) -> S {
+        (self.steps + S::of(self.rest)).max(S::ZERO).min(S::ONE)
+    }
+}
+
+/// A step of fitness, of which 1 is a whole number.
+const STEP: f64 = 1.0 / 1024.0;
+
+/// Fatigue and recovery, for a time step: constant coefficients.
+///
+/// ```
+/// use vm_nostd::{Fatigue, FatigueParams, TimeStep};
+/// let fatigue = Fatigue::<f32>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)?;
+/// let mut state = fatigue.rested();
+/// // Half a minute at 20 pps, and as long a rest.
+/// for _ in 0..30_000 {
+///     fatigue.advance(&mut state, 1.0, 20.0);
+/// }
+/// let tired = state.fitness();
+/// for _ in 0..30_000 {
+///     fatigue.advance(&mut state, 0.0, 20.0);
+/// }
+/// assert!((tired - 0.602).abs() < 0.001 && (state.fitness() - 0.854).abs() < 0.001);
+/// # Ok::<(), vm_nostd::ParameterError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Fatigue<S: Scalar> {
+    activation: Range<S>,
+    frequency: Range<S::Quantity>,
+    /// 1/100, per pps.
+    per_saturating_frequency: S::Factor,
+    least_fitness: S,
+    frequency_dependence: S,
+    /// What a tick takes of the way to the least fitness, and to 1.
+    tire: S::Share,
+    recover: S::Share,
+    step: S,
+    /// All of something.
+    all: S::Share,
+}
+
+impl<S: Scalar> Fatigue<S> {
+    /// Builds fatigue for a time step, or refuses with the name of the field, its value and the limit it
+    /// broke.
+    pub fn build(params: &FatigueParams, step: TimeStep) -> Result<Self, ParameterError> {
+        params.validate()?;
+        let share = |time: f64| S::share(one_minus_exp(step.seconds() / time));
+        Ok(Self {
+            activation: Range { least: S::ZERO, most: S::ONE },
+            frequency: Range::new((0.0, SATURATING_FREQUENCY), S::quantity),
+            per_saturating_frequency: S::per_quantity(1.0 / SATURATING_FREQUENCY),
+            least_fitness: S::from_f64(params.least_fitness),
+            frequency_dependence: S::from_f64(params.frequency_dependence),
+            tire: share(params.fatigue_time),
+            recover: share(params.recovery_time),
+            step: S::from_f64(STEP),
+            all: S::share(1.0),
+        })
+    }
+
+    /// A muscle that has rested for long.
+    pub fn rested(&self) -> FatigueState<S> {
+        FatigueState { steps: S::ONE, rest: S::ZERO.slow() }
+    }
+
+    /// One tick at an activation (clipped to 0..1, not-a-number to 0) and a stimulation frequency, in pps
+    /// (clipped to 0..100; with natural recruitment, give 100). Returns the fitness that is left.
+    pub fn advance(
+        &self,
+        state: &mut FatigueState<S>,
+        activation: S,
+        stimulation_frequency: S::Quantity,
+    ) -> S {
+        let (activation, _) = admit_one(&self.activation, activation, S::ZERO, S::is_finite);
+        let range = &self.frequency;
+        let (frequency, _) =
+            admit_one(range, stimulation_frequency, range.least, S::quantity_is_finite);
+        let relative = S::of_quantity(frequency, &self.per_saturating_frequency);
+        // 1 - β + β f².
+        let strain = S::ONE - self.frequency_dependence * (S::ONE - relative * relative);
+        let load = activation * strain;
+
+        let fitness = state.fitness();
+        let moved = S::moved_by_two(
+            state.rest,
+            ((self.least_fitness - fitness) * load, self.tire),
+            ((S::ONE - fitness) * (S::ONE - load), self.recover),
+        );
+        // What has become a step is counted as one.
+        let rest = S::of(moved);
+        let whole = if rest >= self.step {
+            self.step
+        } else if rest <= -self.step {
+            -self.step
+        } else {
+            S::ZERO
+        };
+        state.steps = state.steps + whole;
+        state.rest = S::moved(moved, -whole, self.all);
+        state.fitness()
+    }
+}
+
+impl<S: Scalar> Output<S> {
+    /// The output with the force that a fitness (0..1) leaves of it.
+    #[must_use]
+    pub fn weakened(self, fitness: S) -> Self {
+        Self { force: fitness.of_share(self.force), ..self }
+    }
+}

@@ -1,0 +1,240 @@
+//! From a stimulus to activation: how much of a muscle a pulse of so many mA and µs recruits, and which
+//! pulse recruits so much of it.
+//!
+//! Strength and duration (Lapicque 1907): a pulse of amplitude I and width w does what a very long one of
+//! I_e = I/(1 + c/w) would, c being the chronaxie; the least I_e that does anything is the rheobase of the
+//! first fibres to be recruited, here the threshold. Between threshold and saturation recruitment rises as
+//! an S, as isometric recruitment curves do (Durfee & MacLean, IEEE Trans. Biomed. Eng. 36 (1989) 654-667):
+//! x = (I_e - threshold)/(saturation - threshold), U = t/(t + m (1 - t))/2 with t = 2x up to x = 1/2, and
+//! the same turned about that point beyond. That rational form is ours: it has the slope m in the middle and
+//! 1/m at both ends, is exactly 0 and 1 where it should be, and has an inverse of the same form.
+
+use crate::domain::{Admission, Range, admit_one};
+use crate::error::{ParameterError, within};
+use crate::scalar::Scalar;
+
+bitflags::bitflags! {
+    /// What was wrong with a pulse, or with the pulse that was asked for.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub struct PulseStatus: u16 {
+        /// Amplitude was outside 0..500 mA, or beyond 100 times saturation, and was clipped.
+        const AMPLITUDE_CLIPPED = 1 << 0;
+        /// Amplitude was not a number (taken as 0) or infinite (clipped).
+        const AMPLITUDE_NOT_FINITE = 1 << 1;
+        /// Width was outside 0..5,000 µs and was clipped.
+        const WIDTH_CLIPPED = 1 << 2;
+        /// Width was not a number (taken as 0) or infinite (clipped).
+        const WIDTH_NOT_FINITE = 1 << 3;
+        /// Activation was outside 0..1 and was clipped.
+        const ACTIVATION_CLIPPED = 1 << 4;
+        /// Activation was not a number (taken as 0) or infinite (clipped).
+        const ACTIVATION_NOT_FINITE = 1 << 5;
+        /// No amplitude or width within these limits recruits so much: the answer is the greatest.
+        const UNREACHABLE = 1 << 6;
+    }
+}
+
+/// Greatest amplitude, mA, and width, µs.
+const GREATEST_AMPLITUDE: f64 = 500.0;
+const GREATEST_WIDTH: f64 = 5000.0;
+/// Greatest amplitude, in saturations: any pulse that is worth its name recruits all with less.
+const GREATEST_STRENGTH: f64 = 100.0;
+
+/// How a muscle answers to the pulses of an electrode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecruitmentCurveParams {
+    /// Amplitude of a very long pulse that recruits the first fibres (their rheobase), A; 1e-5 to 0.2.
+    pub threshold: f64,
+    /// Amplitude of a very long pulse that recruits all, A; 1.05 thresholds to 0.2.
+    pub saturation: f64,
+    /// Width at which twice these amplitudes are needed, s; 5e-5 to 0.001.
+    pub chronaxie: f64,
+    /// Slope m in the middle, as a multiple of that of a straight line; 1 to 10.
+    pub slope: f64,
+}
+
+impl RecruitmentCurveParams {
+    /// Whether a curve can be built; the error names the field, its value and the limit it broke.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        within("threshold", self.threshold, 1e-5, 0.2)?;
+        within("saturation", self.saturation, 1.05 * self.threshold, 0.2)?;
+        within("chronaxie", self.chronaxie, 5e-5, 1e-3)?;
+        within("slope", self.slope, 1.0, 10.0)
+    }
+}
+
+/// A stimulation pulse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse<S: Scalar> {
+    /// I, mA; 0 to 500, and to 100 times saturation.
+    pub amplitude: S::Quantity,
+    /// w, of the phase that stimulates, µs; 0 to 5,000.
+    pub width: S::Quantity,
+}
+
+/// A recruitment curve, ready for use in a tick: it cannot fail there, and no loop depends on data.
+///
+/// Activation never falls where amplitude or width grow.
+///
+/// ```
+/// use vm_nostd::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
+/// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
+///     threshold: 4e-3,
+///     saturation: 12e-3,
+///     chronaxie: 200e-6,
+///     slope: 2.0,
+/// })?;
+/// // Twice the mean of threshold and saturation, for the length of the chronaxie.
+/// let (activation, status) = curve.activation(Pulse { amplitude: 16.0, width: 200.0 });
+/// assert!((activation - 0.5).abs() < 1e-6);
+/// assert!(status.is_empty());
+/// let (amplitude, _) = curve.amplitude_for(activation, 200.0);
+/// assert!((amplitude - 16.0).abs() < 1e-4);
+/// assert_eq!(curve.activation(Pulse { amplitude: 7.9, width: 200.0 }).0, 0.0);
+/// assert_eq!(curve.amplitude_for(0.5, 0.0).1, PulseStatus::UNREACHABLE);
+/// # Ok::<(), vm_nostd::ParameterError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct RecruitmentCurve<S: Scalar> {
+    amplitudes: Range<S::Quantity>,
+    widths: Range<S::Quantity>,
+    activations: Range<S>,
+    /// 1/saturation, per mA.
+    per_saturation: S::Factor,
+    /// mA.
+    saturation: S::Factor,
+    /// 1/chronaxie, per µs.
+    per_chronaxie: S::Factor,
+    /// µs.
+    chronaxie: S::Factor,
+    /// threshold/saturation.
+    threshold: S,
+    /// (saturation - threshold)/saturation, and one over it.
+    reach: S::Factor,
+    per_reach: S::Factor,
+    slope: S,
+}
+
+impl<S: Scalar> RecruitmentCurve<S> {
+    /// Builds a curve, or refuses with the name of the field, its value and the limit it broke.
+    pub fn build(params: &RecruitmentCurveParams) -> Result<Self, ParameterError> {
+        params.validate()?;
+        let (saturation, chronaxie) = (params.saturation * 1e3, params.chronaxie * 1e6);
+        let threshold = params.threshold / params.saturation;
+        let greatest_amplitude = (GREATEST_STRENGTH * saturation).min(GREATEST_AMPLITUDE);
+        Ok(Self {
+            amplitudes: Range::new((0.0, greatest_amplitude), S::quantity),
+            widths: Range::new((0.0, GREATEST_WIDTH), S::quantity),
+            activations: Range { least: S::ZERO, most: S::ONE },
+            per_saturation: S::per_quantity(1.0 / saturation),
+            saturation: S::quantity_factor(saturation),
+            per_chronaxie: S::per_quantity(1.0 / chronaxie),
+            chronaxie: S::quantity_factor(chronaxie),
+            threshold: S::from_f64(threshold),
+            reach: S::factor(1.0 - threshold),
+            per_reach: S::factor(1.0 / (1.0 - threshold)),
+            slope: S::from_f64(params.slope),
+        })
+    }
+
+    /// The activation U (0..1) that a pulse recruits, and what had to be clipped.
+    pub fn activation(&self, pulse: Pulse<S>) -> (S, PulseStatus) {
+        let (amplitude, a) = self.admit_amplitude(pulse.amplitude);
+        let (width, w) = self.admit_width(pulse.width);
+        let strength = S::of_quantity(amplitude, &self.per_saturation) * self.share(width);
+        let excess = (strength - self.threshold).scaled(&self.per_reach);
+        (self.rise(self.activations.clip(excess).0), a | w)
+    }
+
+    /// The amplitude (mA) with which a pulse of some width recruits an activation; for 0, the greatest that
+    /// recruits nothing.
+    pub fn amplitude_for(&self, activation: S, width: S::Quantity) -> (S::Quantity, PulseStatus) {
+        let (width, w) = self.admit_width(width);
+        let (strength, u) = self.strength_for(activation);
+        let share = self.share(width);
+        let most = self.amplitudes.most;
+        // A pulse without width has no share; what it would take is beyond all amplitudes.
+        let wanted = strength.ratio(share.max(S::LEAST));
+        let reachable = share > S::ZERO && wanted <= S::of_quantity(most, &self.per_saturation);
+        if reachable {
+            (self.amplitudes.clip(wanted.as_quantity(&self.saturation)).0, w | u)
+        } else {
+            (most, w | u | PulseStatus::UNREACHABLE)
+        }
+    }
+
+    /// The width (µs) with which a pulse of some amplitude recruits an activation; for 0, the greatest that
+    /// recruits nothing.
+    pub fn width_for(&self, activation: S, amplitude: S::Quantity) -> (S::Quantity, PulseStatus) {
+        let (amplitude, a) = self.admit_amplitude(amplitude);
+        let (strength, u) = self.strength_for(activation);
+        let available = S::of_quantity(amplitude, &self.per_saturation);
+        // I_e/I = w/(w + c), and so w/c = I_e/(I - I_e).
+        let wanted = strength.ratio((available - strength).max(S::LEAST));
+        let most = self.widths.most;
+        let reachable = available > strength && wanted <= S::of_quantity(most, &self.per_chronaxie);
+        if reachable {
+            (self.widths.clip(wanted.as_quantity(&self.chronaxie)).0, a | u)
+        } else {
+            (most, a | u | PulseStatus::UNREACHABLE)
+        }
+    }
+
+    fn admit_amplitude(&self, amplitude: S::Quantity) -> (S::Quantity, PulseStatus) {
+        let range = &self.amplitudes;
+        let (amplitude, a) = admit_one(range, amplitude, range.least, S::quantity_is_finite);
+        let clipped = PulseStatus::AMPLITUDE_CLIPPED;
+        (amplitude, flags(a, clipped, PulseStatus::AMPLITUDE_NOT_FINITE))
+    }
+
+    fn admit_width(&self, width: S::Quantity) -> (S::Quantity, PulseStatus) {
+        let range = &self.widths;
+        let (width, w) = admit_one(range, width, range.least, S::quantity_is_finite);
+        (width, flags(w, PulseStatus::WIDTH_CLIPPED, PulseStatus::WIDTH_NOT_FINITE))
+    }
+
+    /// I_e, in saturations, that recruits an activation.
+    fn strength_for(&self, activation: S) -> (S, PulseStatus) {
+        let (activation, u) = admit_one(&self.activations, activation, S::ZERO, S::is_finite);
+        let clipped = PulseStatus::ACTIVATION_CLIPPED;
+        let status = flags(u, clipped, PulseStatus::ACTIVATION_NOT_FINITE);
+        (self.threshold + self.back(activation).scaled(&self.reach), status)
+    }
+
+    /// I_e/I of a width: w/(w + c), as 1 - 1/(1 + w/c), in which rounding cannot undo a growing width.
+    fn share(&self, width: S::Quantity) -> S {
+        S::ONE - (S::ONE + S::of_quantity(width, &self.per_chronaxie)).reciprocal()
+    }
+
+    /// U of x, both 0..1.
+    fn rise(&self, x: S) -> S {
+        halves(x, |t| self.bend(t))
+    }
+
+    /// x of U, both 0..1: each half is undone by itself, turned about its own middle.
+    fn back(&self, activation: S) -> S {
+        halves(activation, |u| S::ONE - self.bend(S::ONE - u))
+    }
+
+    /// t/(t + m (1 - t)) for t in 0..1. What is divided grows with t and what it is divided by does not,
+    /// however they are rounded.
+    fn bend(&self, t: S) -> S {
+        t.ratio(self.slope - (self.slope - S::ONE) * t)
+    }
+}
+
+/// A curve from (0, 0) to (1, 1) of two halves, the second of them the first turned about their middle.
+fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
+    let first = x <= S::HALF;
+    let rest = if first { x } else { S::ONE - x };
+    let value = half(rest + rest) * S::HALF;
+    if first { value } else { S::ONE - value }
+}
+
+fn flags(admission: Admission, clipped: PulseStatus, not_finite: PulseStatus) -> PulseStatus {
+    match admission {
+        Admission::AsIs => PulseStatus::empty(),
+        Admission::Clipped => clipped,
+        Admission::NotFinite => not_finite,
+    }
+}

@@ -1,0 +1,207 @@
+//! Steady states under intramuscular FES: the force that a stimulation holds, and the stimulation that
+//! holds a force.
+//!
+//! Where nothing moves, V = 0, Y = 1, FV = 1, f_eff = U, S = a_S2 of a type that fires, and the tendon's
+//! force is the fascicles':
+//!
+//! F_se = max(0, U Σ pcsa_i Af_i FL_i + max(0, F_pe1 + Σ pcsa_i Af_i F_pe2)).
+//!
+//! A wanted force tells the tendon's length, by the inverse of F_se, and with it that of the fascicles; at a
+//! given length and frequency all but U is then known. The inverse needs no search; only where the force
+//! cannot be had, the nearest that can be is found by halving.
+
+use crate::activation::ActivationFrequency;
+use crate::domain::{Domain, Range, Status};
+use crate::error::ParameterError;
+use crate::force_length::ForceLength;
+use crate::muscle::{FesMuscle, Input};
+use crate::params::MuscleParams;
+use crate::passive::{Compression, Parallel};
+use crate::sag::SagParams;
+use crate::scalar::Scalar;
+use crate::tendon::{Tendon, TendonInverse};
+use crate::time_step::TimeStep;
+
+/// A muscle under intramuscular FES that has come to rest.
+#[derive(Clone, Copy, Debug)]
+pub struct SteadyFes<S: Scalar, const N: usize> {
+    domain: Domain<S>,
+    fibers: [SteadyFiber<S>; N],
+    parallel: Parallel<S>,
+    compression: Compression<S>,
+    tendon: Tendon<S>,
+    tendon_inverse: TendonInverse<S>,
+    firing: S,
+    /// N, and one over it.
+    force: S::Factor,
+    per_force: S::Factor,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct SteadyFiber<S: Scalar> {
+    fraction: S,
+    activation: ActivationFrequency<S>,
+    force_length: ForceLength<S>,
+    /// S at rest and firing.
+    sag: [S; 2],
+    /// 1/f0.5, s.
+    per_half_force_frequency: S::Factor,
+}
+
+/// What a stimulation holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steady<S: Scalar> {
+    /// Activation U, 0..1.
+    pub activation: S,
+    /// The tendon's force, N (in fixed point: mN).
+    pub force: S::Force,
+    /// L, L_ce0.
+    pub fascicle_length: S,
+    /// What had to be saturated; [`Status::FORCE_UNREACHABLE`] where no activation holds the wanted force.
+    pub status: Status,
+}
+
+/// Where the fascicles are, and what pulls on them.
+#[derive(Clone, Copy, Debug)]
+struct Balance<S> {
+    /// U Σ pcsa Af FL for U = 1, F0.
+    active: S,
+    /// max(0, F_pe1 + Σ pcsa Af F_pe2), F0.
+    passive: S,
+    /// F_se, F0.
+    tendon: S,
+    fascicle_length: S,
+}
+
+/// Halvings that bring a length to its last bit.
+const HALVINGS: usize = 40;
+
+impl<S: Scalar, const N: usize> SteadyFes<S, N> {
+    /// Builds the steady states of a muscle, or refuses what [`FesMuscle`] refuses.
+    pub fn build(params: &MuscleParams<N>) -> Result<Self, ParameterError> {
+        // What a step has to do with does not move here.
+        let step = TimeStep::MILLISECOND;
+        FesMuscle::<S, N>::build(params, step)?;
+        let elements = &params.elements;
+        let newtons = params.max_isometric_force();
+        let (fascicle, tendon) = (params.fascicle_length, params.tendon_length);
+        Ok(Self {
+            domain: Domain::new(params),
+            fibers: params.fibers.map(|fiber| {
+                let t = &fiber.fiber_type;
+                let sag = t.sag.map_or([1.0; 2], |sag| [sag.resting_level, sag.firing_level]);
+                SteadyFiber {
+                    fraction: S::from_f64(fiber.fraction),
+                    activation: ActivationFrequency::new(&t.activation),
+                    force_length: ForceLength::new(&t.force_length),
+                    sag: sag.map(S::from_f64),
+                    per_half_force_frequency: S::per_quantity(1.0 / t.half_force_frequency),
+                }
+            }),
+            parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
+            compression: Compression::new(&elements.compression, step),
+            tendon: Tendon::new(&elements.tendon, fascicle, tendon, step),
+            tendon_inverse: TendonInverse::new(&elements.tendon, fascicle, tendon),
+            firing: S::from_f64(SagParams::FIRING),
+            force: S::force_factor(newtons),
+            per_force: S::per_newton(1.0 / newtons),
+        })
+    }
+
+    /// The force that an input holds, once nothing changes any more.
+    pub fn force(&self, input: Input<S>) -> Steady<S> {
+        let (input, status) = self.domain.admit(input, self.domain.path_length.most);
+        self.settled(input, status)
+    }
+
+    /// The activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency: within
+    /// 0.1 % of F0 where one does. Where none does, the status says so, and activation and force are the
+    /// nearest that there are.
+    pub fn activation_for(
+        &self,
+        force: S::Force,
+        path_length: S::PathLength,
+        stimulation_frequency: S::Quantity,
+    ) -> Steady<S> {
+        let input = Input { activation: S::ONE, path_length, stimulation_frequency };
+        let (input, status) = self.domain.admit(input, self.domain.path_length.most);
+        let wanted = S::of_force(force, &self.per_force);
+        let extension = self.tendon_inverse.extension(wanted);
+        let lengths = &self.domain.fascicle_length;
+        let length = self.tendon.fascicle_length(input.path_length, extension);
+        let balance = self.balance(&input, extension);
+        let missing = wanted - balance.passive;
+        // A force that is not above 0 has no length, and nor has one that would need no fascicles.
+        let possible = wanted > S::ZERO && lengths.contains(length) && missing >= S::ZERO;
+        if possible && missing <= balance.active {
+            let activation = missing.ratio(balance.active.max(S::LEAST)).min(S::ONE);
+            return self.steady(activation, balance, status);
+        }
+        let none = self.settled(Input { activation: S::ZERO, ..input }, status);
+        let all = self.settled(input, status);
+        let flagged = |steady: Steady<S>| Steady {
+            status: steady.status | Status::FORCE_UNREACHABLE,
+            ..steady
+        };
+        // Not-a-number, too, is nearest to nothing.
+        if wanted > S::of_force(all.force, &self.per_force) { flagged(all) } else { flagged(none) }
+    }
+
+    fn steady(&self, activation: S, balance: Balance<S>, status: Status) -> Steady<S> {
+        let outside = !self.domain.filaments.contains(balance.fascicle_length);
+        let mut status = status;
+        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside);
+        Steady {
+            activation,
+            force: balance.tendon.force(&self.force),
+            fascicle_length: balance.fascicle_length,
+            status,
+        }
+    }
+
+    /// Where an admitted input settles: the tendon pulls more, and the fascicles less, the further it is
+    /// extended.
+    fn settled(&self, input: Input<S>, status: Status) -> Steady<S> {
+        let lengths = &self.domain.fascicle_length;
+        let mut least = self.tendon.extension(input.path_length, lengths.most);
+        let mut most = self.tendon.extension(input.path_length, lengths.least);
+        for _ in 0..HALVINGS {
+            let extension = (least + most) * S::HALF;
+            let balance = self.balance(&input, extension);
+            if balance.tendon > input.activation * balance.active + balance.passive {
+                most = extension;
+            } else {
+                least = extension;
+            }
+        }
+        let balance = self.balance(&input, (least + most) * S::HALF);
+        self.steady(input.activation, balance, status)
+    }
+
+    /// The forces with the tendon at an extension.
+    fn balance(&self, input: &Input<S>, extension: S) -> Balance<S> {
+        let fascicle_length = self.tendon.fascicle_length(input.path_length, extension);
+        let range: &Range<S> = &self.domain.fascicle_length;
+        let (length, _) = range.clip(fascicle_length);
+        let (inside, _) = self.domain.filaments.clip(length);
+        let (reciprocal, logarithm) = (inside.reciprocal(), inside.ln());
+        let (mut active, mut compressed) = (S::ZERO, S::ZERO);
+        for fiber in &self.fibers {
+            let per = &fiber.per_half_force_frequency;
+            let frequency = S::of_quantity(input.stimulation_frequency, per);
+            let sag = fiber.sag[usize::from(frequency > self.firing)];
+            let curve = fiber.activation.at(reciprocal);
+            let activation = curve.at(frequency * sag, S::ZERO, S::ZERO).middle;
+            let share = fiber.fraction * activation;
+            active = active + share * fiber.force_length.at(logarithm, reciprocal).0;
+            compressed = compressed + share;
+        }
+        let passive = self.parallel.at(length).0 + compressed * self.compression.at(length).0;
+        Balance {
+            active,
+            passive: passive.max(S::ZERO),
+            tendon: self.tendon.pull(extension).force,
+            fascicle_length,
+        }
+    }
+}
