@@ -2,6 +2,7 @@
 
 mod arm;
 mod cycles;
+mod sweep;
 
 use crate::engine::{self, Arithmetic};
 use crate::figures;
@@ -45,6 +46,8 @@ enum Command {
     Arm(arm::ArmArgs),
     /// Make the paper's figures 3 to 7 again, with their numbers and what became of its claims.
     Figures(FiguresArgs),
+    /// Compare every arithmetic with the reference over a grid of muscles and inputs, or a sample.
+    Sweep(sweep::SweepArgs),
     /// Compare the READMEs' measured tables with what is measured.
     Readme(ReadmeArgs),
 }
@@ -153,6 +156,7 @@ pub fn main() -> ExitCode {
         Command::Cycles(args) => cycles::run(&args),
         Command::Arm(args) => arm::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),
+        Command::Sweep(args) => sweep::run(&args).map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };
     match done {

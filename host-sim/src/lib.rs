@@ -14,6 +14,7 @@ pub mod plot;
 pub mod readme;
 pub mod reference;
 pub mod scenario;
+pub mod sweep;
 pub mod target;
 pub mod tolerance;
 pub mod trace;

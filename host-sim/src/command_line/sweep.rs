@@ -1,0 +1,138 @@
+//! `vm sweep`.
+
+use super::{ModeName, print};
+use crate::engine::{Arithmetic, mode_name, status_names};
+use crate::sweep::{Space, Sweep, Variation};
+use crate::trace::write_atomically;
+use clap::{Args, ValueEnum};
+use comfy_table::{Table, presets};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// `vm sweep`: a grid of muscles and inputs, or a sample at random, every arithmetic against the reference.
+#[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// Where the rows go, in CSV. If there are some already, of the same sweep, it goes on with the others.
+    #[arg(long, required_unless_present = "case")]
+    output: Option<PathBuf>,
+    /// So many cases drawn at random of every mode, instead of a grid.
+    #[arg(long, value_name = "COUNT")]
+    random: Option<usize>,
+    /// What they are drawn with.
+    #[arg(long, default_value_t = 1, requires = "random")]
+    seed: u64,
+    /// What varies: key=value,value,... or, drawn at random, key=from:to.
+    #[arg(long, value_name = "KEY=VALUES")]
+    vary: Vec<String>,
+    /// How muscles are recruited.
+    #[arg(long, value_enum, value_delimiter = ',', default_values = ["continuous", "fes"])]
+    modes: Vec<ModeName>,
+    /// What they are computed in, besides the reference.
+    #[arg(long, value_enum, value_delimiter = ',', default_values = ["f32", "fixed"])]
+    arithmetics: Vec<Arithmetic>,
+    /// How many of the worst cases are listed, of each arithmetic with and without flags.
+    #[arg(long, default_value_t = 5)]
+    worst: usize,
+    /// Only this case: its muscle and its inputs as files in the folder of --replay.
+    #[arg(long, requires = "replay", conflicts_with = "output")]
+    case: Option<usize>,
+    /// A folder for a case's muscle.toml and input.csv; made if it is not there.
+    #[arg(long, requires = "case", value_name = "FOLDER")]
+    replay: Option<PathBuf>,
+}
+
+impl SweepArgs {
+    fn sweep(&self) -> Result<Sweep, Box<dyn Error>> {
+        if self.arithmetics.contains(&Arithmetic::Reference) {
+            return Err("--arithmetics reference: it is what the others are compared with".into());
+        }
+        let variations: Vec<Variation> =
+            self.vary.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
+        let modes = self.modes.iter().map(|&mode| mode.into()).collect();
+        let random = self.random.map(|count| (count, self.seed));
+        Ok(Sweep {
+            space: Space::new(&variations, modes, random)?,
+            arithmetics: self.arithmetics.clone(),
+            arguments: self.arguments(),
+        })
+    }
+
+    /// What makes this sweep this one, as arguments.
+    fn arguments(&self) -> String {
+        let mut arguments = Vec::new();
+        if let Some(count) = self.random {
+            arguments.push(format!("--random {count} --seed {}", self.seed));
+        }
+        arguments.extend(self.vary.iter().map(|vary| format!("--vary {vary}")));
+        arguments.push(format!("--modes {}", names(&self.modes)));
+        arguments.push(format!("--arithmetics {}", names(&self.arithmetics)));
+        arguments.join(" ")
+    }
+}
+
+/// The names of values on the command line.
+fn names<T: ValueEnum>(values: &[T]) -> String {
+    let names = values.iter().filter_map(T::to_possible_value);
+    names.map(|value| value.get_name().to_owned()).collect::<Vec<_>>().join(",")
+}
+
+/// Runs a sweep, or writes one of its cases to files.
+pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
+    let sweep = args.sweep()?;
+    if let (Some(case), Some(folder)) = (args.case, &args.replay) {
+        return replay(&sweep, case, folder);
+    }
+    let Some(output) = &args.output else { return Ok(()) };
+    let ledger = sweep.run(output)?;
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["arithmetic", "max % F0", "status", "replay: cargo vm sweep ..."]);
+    for worst in sweep.worst(&ledger, args.worst) {
+        let case = worst.case;
+        table.add_row([
+            worst.arithmetic.name().to_owned(),
+            format!("{:.4}", worst.max_pct_f0),
+            worst.status,
+            format!("{} --case {case} --replay case-{case}", sweep.arguments),
+        ]);
+    }
+    print(&table)?;
+    let refused = ledger.rows().filter(|(_, row)| row.last().is_some_and(|p| !p.is_empty()));
+    let (count, refused) = (sweep.space.count(), refused.count());
+    print(&format!("{count} cases in {}, {refused} with a refusal", output.display()))?;
+    Ok(())
+}
+
+/// Writes a case to files, and says what it comes to.
+fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let count = sweep.space.count();
+    if number >= count {
+        return Err(format!("--case {number}: must be below {count}, the number of cases").into());
+    }
+    let case = sweep.space.case(number);
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let (muscle, input) = (folder.join("muscle.toml"), folder.join("input.csv"));
+    write_atomically(&muscle, case.muscle_file().as_bytes())?;
+    write_atomically(&input, case.input_file().as_bytes())?;
+    let mode = mode_name(case.mode);
+    match case.errors(&sweep.arithmetics) {
+        Ok(errors) => {
+            for (arithmetic, measured) in sweep.arithmetics.iter().zip(errors) {
+                let name = arithmetic.name();
+                print(&match measured {
+                    Ok((error, status)) => {
+                        format!("{name}: max {:.6} % of F0, {}", error.max, status_names(status))
+                    }
+                    Err(refusal) => refusal,
+                })?;
+            }
+        }
+        Err(problem) => print(&problem)?,
+    }
+    print(&format!(
+        "cargo vm run --muscle {} --input {} --output out.csv --mode {mode} --arithmetic f32",
+        muscle.display(),
+        input.display()
+    ))?;
+    Ok(())
+}

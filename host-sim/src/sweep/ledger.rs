@@ -1,0 +1,182 @@
+//! A table that grows row by row and can be gone on with: what was written whole counts, once.
+
+use crate::trace::{TraceError, cell_error, write_atomically};
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Why a table cannot be gone on with.
+#[derive(Debug, thiserror::Error)]
+pub enum LedgerError {
+    /// It could not be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Somebody else is writing it.
+    #[error("{}: another sweep is writing it", .0.display())]
+    Busy(PathBuf),
+    /// It is the table of something else.
+    #[error("{}: begins with \"{found}\", and not with \"{expected}\": another sweep's table, or none", path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// Its line.
+        found: String,
+        /// What the line of this sweep's table is.
+        expected: String,
+    },
+    /// A row that this sweep did not write.
+    #[error(transparent)]
+    Row(#[from] TraceError),
+}
+
+/// The table of a sweep.
+#[derive(Debug)]
+pub struct Ledger {
+    path: PathBuf,
+    file: File,
+    head: [String; 2],
+    count: usize,
+    /// Rows by case.
+    rows: BTreeMap<usize, Vec<String>>,
+}
+
+impl Ledger {
+    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is dropped.
+    pub fn open(path: &Path, head: &[String; 2], count: usize) -> Result<Self, LedgerError> {
+        let failed = |source| LedgerError::File { path: path.to_owned(), source };
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(path)
+            .map_err(failed)?;
+        file.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => LedgerError::Busy(path.to_owned()),
+            TryLockError::Error(source) => failed(source),
+        })?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        let text = String::from_utf8_lossy(&bytes[..whole]).into_owned();
+        let mut lines = text.lines();
+        for (index, expected) in head.iter().enumerate() {
+            match lines.next() {
+                Some(line) if line == expected => {}
+                // Nothing, or a beginning of it: an interruption could not be earlier.
+                None if begins(head, &bytes) => {
+                    file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
+                    let text = format!("{}\n{}\n", head[0], head[1]);
+                    file.write_all(text.as_bytes()).map_err(failed)?;
+                    return Ok(Self::new(path, file, head, count, BTreeMap::new()));
+                }
+                other => {
+                    let found = other.unwrap_or_default().to_owned();
+                    let expected = head[index].clone();
+                    return Err(LedgerError::Other { path: path.to_owned(), found, expected });
+                }
+            }
+        }
+        let rows = rows(path, &text, head, count)?;
+        file.set_len(whole as u64).map_err(failed)?;
+        file.seek(SeekFrom::End(0)).map_err(failed)?;
+        Ok(Self::new(path, file, head, count, rows))
+    }
+
+    fn new(
+        path: &Path,
+        file: File,
+        head: &[String; 2],
+        count: usize,
+        rows: BTreeMap<usize, Vec<String>>,
+    ) -> Self {
+        Self { path: path.to_owned(), file, head: head.clone(), count, rows }
+    }
+
+    /// The cases that have no row.
+    pub fn missing(&self) -> Vec<usize> {
+        (0..self.count).filter(|case| !self.rows.contains_key(case)).collect()
+    }
+
+    /// The rows, by case.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[String])> {
+        self.rows.iter().map(|(&case, row)| (case, row.as_slice()))
+    }
+
+    /// Adds a row, whose first cell is its case.
+    pub fn append(&mut self, row: &[String]) -> Result<(), LedgerError> {
+        let failed = |source| LedgerError::File { path: self.path.clone(), source };
+        let line = line(row).map_err(failed)?;
+        // In one piece, so that an interruption leaves it whole or torn, but never mixed.
+        self.file.write_all(&line).map_err(failed)?;
+        if let Some(case) = row.first().and_then(|cell| cell.parse().ok()) {
+            self.rows.insert(case, row.to_vec());
+        }
+        Ok(())
+    }
+
+    /// Puts the rows in the order of their cases.
+    pub fn finish(&mut self) -> Result<(), LedgerError> {
+        let failed = |source| LedgerError::File { path: self.path.clone(), source };
+        let mut bytes = format!("{}\n{}\n", self.head[0], self.head[1]).into_bytes();
+        for row in self.rows.values() {
+            bytes.extend(line(row).map_err(failed)?);
+        }
+        Ok(write_atomically(&self.path, &bytes)?)
+    }
+}
+
+fn line(row: &[String]) -> std::io::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(row)?;
+    writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()))
+}
+
+/// Whether bytes are a beginning of a table's head.
+fn begins(head: &[String; 2], bytes: &[u8]) -> bool {
+    format!("{}\n{}\n", head[0], head[1]).as_bytes().starts_with(bytes)
+}
+
+/// The rows below the head, each with its case; every one must be of this table.
+fn rows(
+    path: &Path,
+    text: &str,
+    head: &[String; 2],
+    count: usize,
+) -> Result<BTreeMap<usize, Vec<String>>, LedgerError> {
+    let body = &text[head[0].len() + head[1].len() + 2..];
+    let columns = head[1].split(',').count();
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(body.as_bytes());
+    let mut rows = BTreeMap::new();
+    for record in reader.records() {
+        let refused = |line: u64, column: &str, problem: String| {
+            LedgerError::Row(cell_error(path, line + 2, column, problem))
+        };
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(0, csv::Position::line);
+            refused(line, "(any)", error.to_string())
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let row: Vec<String> = record.iter().map(str::to_owned).collect();
+        if row.len() != columns {
+            let problem = format!("{} cells, the header has {columns}", row.len());
+            return Err(refused(line, "(any)", problem));
+        }
+        let case = row[0].parse().ok().filter(|case| (0..count).contains(case));
+        let Some(case) = case else {
+            let problem = format!("\"{}\": must be a whole number below {count}", row[0]);
+            return Err(refused(line, "case", problem));
+        };
+        if rows.insert(case, row).is_some() {
+            return Err(refused(line, "case", format!("{case} is there twice")));
+        }
+    }
+    Ok(rows)
+}

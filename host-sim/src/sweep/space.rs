@@ -1,0 +1,231 @@
+//! What a sweep goes through: a grid of values, or a sample at random.
+
+use super::case::Case;
+use crate::reference::Mode;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::str::FromStr;
+
+/// Something that varies.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name, with its unit.
+    pub name: &'static str,
+    /// What it is when nothing is said, in a grid: the paper's muscle.
+    pub nominal: f64,
+    /// Where it is drawn from when nothing is said, at random.
+    pub range: (f64, f64),
+    /// What it may be.
+    pub limits: (f64, f64),
+    /// Drawn evenly by its logarithm.
+    pub logarithmic: bool,
+}
+
+const fn key(
+    name: &'static str,
+    nominal: f64,
+    range: (f64, f64),
+    limits: (f64, f64),
+    logarithmic: bool,
+) -> Key {
+    Key { name, nominal, range, limits, logarithmic }
+}
+
+/// All that varies: the muscle, then what it is made to do.
+pub const KEYS: [Key; 14] = [
+    key("mass_g", 97.5, (2.0, 1000.0), (0.01, 20e3), true),
+    key("fascicle_length_cm", 11.0, (2.0, 30.0), (0.5, 100.0), true),
+    // L_se0/L_ce0, and the longest fascicles, L_ce0.
+    key("tendon_ratio", 0.18, (0.1, 5.0), (0.01, 50.0), true),
+    key("longest_length_l0", 1.5, (1.2, 1.6), (0.9, 2.0), false),
+    key("slow_fraction", 0.6, (0.05, 0.95), (0.001, 0.999), false),
+    key("recruitment_saturation", 0.8, (0.3, 1.0), (0.01, 1.0), false),
+    // Activation swings between these.
+    key("activation_from", 0.2, (0.0, 1.0), (0.0, 1.0), false),
+    key("activation_to", 0.8, (0.0, 1.0), (0.0, 1.0), false),
+    key("activation_hz", 2.0, (0.0, 10.0), (0.0, 100.0), false),
+    // The path swings about L_se0 and so many L_ce0, at most so fast.
+    key("path_l0", 1.0, (0.75, 1.1), (0.4, 2.0), false),
+    key("path_l0_per_s", 1.0, (0.0, 4.0), (0.0, 20.0), false),
+    key("path_hz", 2.0, (0.5, 8.0), (0.1, 100.0), false),
+    key("stim_hz", 20.0, (3.0, 60.0), (0.0, 500.0), false),
+    key("tick_ms", 1.0, (1.0, 1.0), (0.1, 2.0), false),
+];
+
+/// What a key is given on the command line: `key=value`, `key=from:to` or `key=value,value,...`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variation {
+    /// Index of the key.
+    key: usize,
+    values: Values,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Values {
+    Range(f64, f64),
+    Listed(Vec<f64>),
+}
+
+/// Why a sweep cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpaceError {
+    /// Not `key=...`.
+    #[error("\"{0}\": must be key=value, key=from:to or key=value,value,... with a key of {keys}", keys = names())]
+    Form(String),
+    /// A value that is none, or that a key cannot have.
+    #[error("{key} = {value}: must be a number from {least} to {most}")]
+    Value {
+        /// The key.
+        key: &'static str,
+        /// The refused value, as given.
+        value: String,
+        /// The least that is taken.
+        least: f64,
+        /// The most that is taken.
+        most: f64,
+    },
+    /// A range that ends before it begins.
+    #[error("{key} = {from}:{to}: must go up")]
+    Order {
+        /// The key.
+        key: &'static str,
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+    /// A key given twice.
+    #[error("{0}: given twice")]
+    Twice(&'static str),
+    /// A grid needs values.
+    #[error(
+        "{0}: a grid needs values, not a range: key=value,value,... (or a sample, with --random)"
+    )]
+    RangeInGrid(&'static str),
+    /// Too many cases, or none.
+    #[error("{0} cases: must be 1 to {most}", most = MOST_CASES)]
+    Count(usize),
+}
+
+fn names() -> String {
+    KEYS.map(|key| key.name).join(", ")
+}
+
+/// More would not fit in one table.
+pub const MOST_CASES: usize = 100_000_000;
+
+impl FromStr for Variation {
+    type Err = SpaceError;
+
+    fn from_str(text: &str) -> Result<Self, SpaceError> {
+        let form = || SpaceError::Form(text.to_owned());
+        let (name, values) = text.split_once('=').ok_or_else(form)?;
+        let index = KEYS.iter().position(|key| key.name == name).ok_or_else(form)?;
+        let Key { name: key, limits: (least, most), .. } = KEYS[index];
+        let number = |value: &str| {
+            let refused = || SpaceError::Value { key, value: value.to_owned(), least, most };
+            let number = value.trim().parse::<f64>().map_err(|_| refused())?;
+            if (least..=most).contains(&number) { Ok(number) } else { Err(refused()) }
+        };
+        let values = match values.split_once(':') {
+            Some((from, to)) => {
+                let (from, to) = (number(from)?, number(to)?);
+                if from > to {
+                    return Err(SpaceError::Order { key, from, to });
+                }
+                Values::Range(from, to)
+            }
+            None => Values::Listed(values.split(',').map(number).collect::<Result<_, _>>()?),
+        };
+        Ok(Self { key: index, values })
+    }
+}
+
+/// All cases of a sweep, by number.
+#[derive(Clone, Debug)]
+pub struct Space {
+    modes: Vec<Mode>,
+    /// Of every key.
+    values: [Values; KEYS.len()],
+    /// How many are drawn, and the seed; none in a grid.
+    random: Option<(usize, u64)>,
+    count: usize,
+}
+
+impl Space {
+    /// A grid of the values given, all else as in the paper; or so many cases drawn at random.
+    pub fn new(
+        variations: &[Variation],
+        modes: Vec<Mode>,
+        random: Option<(usize, u64)>,
+    ) -> Result<Self, SpaceError> {
+        let mut values = KEYS.map(|key| match random {
+            Some(_) => Values::Range(key.range.0, key.range.1),
+            None => Values::Listed(vec![key.nominal]),
+        });
+        let mut given = [false; KEYS.len()];
+        for Variation { key, values: of_key } in variations {
+            let name = KEYS[*key].name;
+            if std::mem::replace(&mut given[*key], true) {
+                return Err(SpaceError::Twice(name));
+            }
+            if random.is_none() && matches!(of_key, Values::Range(..)) {
+                return Err(SpaceError::RangeInGrid(name));
+            }
+            values[*key] = of_key.clone();
+        }
+        let each = match random {
+            Some((count, _)) => Some(count),
+            None => values.iter().try_fold(1_usize, |count, values| match values {
+                Values::Listed(listed) => count.checked_mul(listed.len()),
+                Values::Range(..) => None,
+            }),
+        };
+        let count = each.and_then(|each| each.checked_mul(modes.len())).unwrap_or(usize::MAX);
+        if !(1..=MOST_CASES).contains(&count) {
+            return Err(SpaceError::Count(count));
+        }
+        Ok(Self { modes, values, random, count })
+    }
+
+    /// How many cases there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// A case by its number, the same whenever and in whatever order it is asked for.
+    pub fn case(&self, number: usize) -> Case {
+        let mode = self.modes[number % self.modes.len()];
+        let mut index = number / self.modes.len();
+        let mut generator = self.random.map(|(_, seed)| {
+            let mut generator = ChaCha8Rng::seed_from_u64(seed);
+            generator.set_stream(index as u64);
+            generator
+        });
+        let mut values = [0.0; KEYS.len()];
+        for ((value, of_key), key) in values.iter_mut().zip(&self.values).zip(&KEYS) {
+            *value = match (&mut generator, of_key) {
+                (Some(generator), of_key) => {
+                    // 53 bits, 0 up to but not 1.
+                    let share = (generator.next_u64() >> 11) as f64 * 2_f64.powi(-53);
+                    drawn(of_key, share, key.logarithmic)
+                }
+                (None, Values::Listed(listed)) => {
+                    let value = listed[index % listed.len()];
+                    index /= listed.len();
+                    value
+                }
+                (None, Values::Range(from, _)) => *from,
+            };
+        }
+        Case { mode, values }
+    }
+}
+
+fn drawn(values: &Values, share: f64, logarithmic: bool) -> f64 {
+    match values {
+        Values::Listed(listed) => listed[(share * listed.len() as f64) as usize],
+        Values::Range(from, to) if logarithmic => from * (to / from).powf(share),
+        Values::Range(from, to) => from + share * (to - from),
+    }
+}
