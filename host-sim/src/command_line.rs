@@ -4,14 +4,15 @@ mod arm;
 mod cycles;
 mod sweep;
 
+use crate::chart::{Chart, Panel, Point};
 use crate::engine::{self, Arithmetic};
 use crate::figures;
 use crate::golden;
 use crate::link;
 use crate::muscle_file;
-use crate::plot::{self, Series};
 use crate::readme;
 use crate::reference::Mode;
+use crate::report;
 use crate::trace::{self, InputTrace, OutputRow};
 use crate::verify::{self, Report};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -46,6 +47,8 @@ enum Command {
     Arm(arm::ArmArgs),
     /// Make the paper's figures 3 to 7 again, with their numbers and what became of its claims.
     Figures(FiguresArgs),
+    /// All that is measured as one HTML file, for a browser without a network.
+    Report(ReportArgs),
     /// Compare every arithmetic with the reference over a grid of muscles and inputs, or a sample.
     Sweep(sweep::SweepArgs),
     /// Compare the READMEs' measured tables with what is measured.
@@ -112,6 +115,16 @@ struct FiguresArgs {
 }
 
 #[derive(Debug, Args)]
+struct ReportArgs {
+    /// Where the page goes, in HTML.
+    #[arg(long)]
+    out: PathBuf,
+    /// What `vm cycles --json` printed, if cycles were measured.
+    #[arg(long, value_name = "FILE")]
+    cycles: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 struct ReadmeArgs {
     /// Write what is measured.
     #[arg(long)]
@@ -156,6 +169,7 @@ pub fn main() -> ExitCode {
         Command::Cycles(args) => cycles::run(&args),
         Command::Arm(args) => arm::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),
+        Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };
@@ -277,19 +291,19 @@ fn draw(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
         return Err(trace::cell_error(&args.run, 2, "t_s", problem).into());
     }
     let labels = ["force (N)", "length (L0)", "velocity (L0/s)"];
-    let mut series: Vec<Series> = labels
-        .iter()
+    let panel = |y, points| Panel { y, lines: vec![(String::new(), points)] };
+    let mut panels: Vec<Panel> = labels
+        .into_iter()
         .enumerate()
-        .map(|(index, label)| Series {
-            label,
-            points: rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect(),
-        })
+        .map(|(index, y)| panel(y, rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect()))
         .collect();
     if let Some(path) = &args.input {
-        series.extend(input_series(&trace::read_inputs(path)?));
+        let inputs = input_lines(&trace::read_inputs(path)?);
+        panels.extend(inputs.map(|(y, points)| panel(y, points)));
     }
     let title = args.run.file_name().map_or(Path::new("run"), Path::new);
-    let svg = plot::draw(&title.display().to_string(), &series)?;
+    let title = title.display().to_string();
+    let svg = Chart { title: &title, x: "time (s)", panels }.draw()?;
     trace::write_atomically(&args.output, svg.as_bytes())?;
     Ok(())
 }
@@ -322,6 +336,12 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
+    let page = report::page(args.cycles.as_deref())?;
+    trace::write_atomically(&args.out, page.as_bytes())?;
+    Ok(())
+}
+
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
     let report = verify::verify()?;
     let tables = [
@@ -340,7 +360,8 @@ fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
     Ok(all_current)
 }
 
-fn input_series(trace: &InputTrace) -> [Series; 3] {
+/// The inputs over time, each with what it is.
+fn input_lines(trace: &InputTrace) -> [(&'static str, Vec<Point>); 3] {
     let points = |value: fn(&crate::reference::Input) -> f64| {
         trace
             .inputs
@@ -350,8 +371,8 @@ fn input_series(trace: &InputTrace) -> [Series; 3] {
             .collect()
     };
     [
-        Series { label: "activation", points: points(|input| input.activation) },
-        Series { label: "path (m)", points: points(|input| input.path_length) },
-        Series { label: "stimulation (pps)", points: points(|input| input.stimulation_frequency) },
+        ("activation", points(|input| input.activation)),
+        ("path (m)", points(|input| input.path_length)),
+        ("stimulation (pps)", points(|input| input.stimulation_frequency)),
     ]
 }

@@ -4,7 +4,6 @@
 //! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184, section 3.
 
 mod arm;
-mod chart;
 mod claims;
 mod computation_time;
 mod sinusoids;
@@ -14,6 +13,7 @@ pub use arm::{ACTIVATIONS as ARM_ACTIVATIONS, DURATION as ARM_DURATION, START as
 pub use claims::Claim;
 
 use crate::arm::ArmError;
+use crate::chart::Chart;
 use crate::engine::{Arithmetic, RunError};
 use crate::reference::{Mode, Muscle};
 use crate::scenario::{paper_muscle, paper_muscle_of_units};
@@ -83,7 +83,7 @@ impl Folder<'_> {
         Ok(write_atomically(&self.0.join(name), &text)?)
     }
 
-    fn figure(&self, name: &str, chart: &chart::Chart<'_>) -> Result<(), FiguresError> {
+    fn figure(&self, name: &str, chart: &Chart<'_>) -> Result<(), FiguresError> {
         let svg = chart.draw().map_err(FiguresError::Draw)?;
         Ok(write_atomically(&self.0.join(name), svg.as_bytes())?)
     }

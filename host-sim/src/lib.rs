@@ -1,6 +1,7 @@
 //! Host side of the muscle model: the independent reference, and the proof of accuracy.
 
 pub mod arm;
+pub mod chart;
 pub mod coefficients;
 pub mod command_line;
 pub mod cycles;
@@ -10,9 +11,9 @@ pub mod golden;
 pub mod link;
 pub mod metrics;
 pub mod muscle_file;
-pub mod plot;
 pub mod readme;
 pub mod reference;
+pub mod report;
 pub mod scenario;
 pub mod sweep;
 pub mod target;

@@ -55,6 +55,25 @@ pub struct Report {
     pub rows: Vec<Row>,
     /// Entries of the table of tolerances that no row uses.
     pub unused: Vec<String>,
+    /// The forces that were compared, of the scenarios at 1 ms.
+    pub traces: Vec<Traces>,
+}
+
+/// The forces of a scenario, N, a value per row of its inputs.
+#[derive(Clone, Debug)]
+pub struct Traces {
+    /// Its name.
+    pub scenario: String,
+    /// Recruitment mode.
+    pub mode: String,
+    /// Time between rows, s.
+    pub time_step: f64,
+    /// F0, N.
+    pub f0: f64,
+    /// Of the reference.
+    pub reference: Vec<f64>,
+    /// Of every arithmetic, by its name.
+    pub computed: Vec<(&'static str, Vec<f64>)>,
 }
 
 impl Report {
@@ -69,33 +88,35 @@ pub fn verify() -> Result<Report, RunError> {
     let scenarios = scenario::all();
     let table = tolerance::table();
     let progress = ProgressBar::new(scenarios.len() as u64);
-    let rows: Vec<Vec<Row>> = scenarios
+    let compared: Vec<(Vec<Row>, Traces)> = scenarios
         .par_iter()
         .map(|scenario| {
-            let rows = compare(scenario, &table);
+            let compared = compare(scenario, &table);
             progress.inc(1);
-            rows
+            compared
         })
         .collect::<Result<_, _>>()?;
     progress.finish_and_clear();
+    let (rows, mut traces): (Vec<_>, Vec<_>) = compared.into_iter().unzip();
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
+    traces.retain(|traces| !traces.scenario.contains('@'));
     let unused = table
         .keys()
         .filter(|key| !rows.iter().any(|row| key_of(row) == **key))
         .map(|key| key.join(","))
         .collect();
-    Ok(Report { rows, unused })
+    Ok(Report { rows, unused, traces })
 }
 
 fn key_of(row: &Row) -> tolerance::Key {
     [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone)
 }
 
-/// All rows of one scenario.
+/// All rows of one scenario, and its forces.
 fn compare(
     scenario: &Scenario,
     table: &BTreeMap<tolerance::Key, Tolerance>,
-) -> Result<Vec<Row>, RunError> {
+) -> Result<(Vec<Row>, Traces), RunError> {
     let run = |arithmetic| {
         let rows = engine::run(&scenario.muscle, scenario.mode, arithmetic, &scenario.trace)?;
         let flags = rows.iter().fold(vm_nostd::Status::empty(), |all, row| all | row.1);
@@ -120,16 +141,27 @@ fn compare(
         rows.push(judge(Arithmetic::Reference, "vector", error, Default::default()));
     }
     let (scheme, scheme_flags) = run(Arithmetic::F64)?;
+    let mut forces_of = Vec::new();
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
         let (computed, flags) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
         let row = judge(arithmetic, "reference", error, (flags, scenario.flags));
         let arithmetic_pct_f0 = Some(ForceError::between(&computed, &scheme, f0).max);
         rows.push(Row { arithmetic_pct_f0, ..row });
+        forces_of.push((arithmetic.name(), computed));
     }
     let error = ForceError::between(&scheme, &reference, f0);
     rows.push(judge(Arithmetic::F64, "reference", error, (scheme_flags, scenario.flags)));
-    Ok(rows)
+    forces_of.push((Arithmetic::F64.name(), scheme));
+    let traces = Traces {
+        scenario: scenario.name.clone(),
+        mode: engine::mode_name(scenario.mode).to_owned(),
+        time_step: scenario.trace.time_step,
+        f0,
+        reference,
+        computed: forces_of,
+    };
+    Ok((rows, traces))
 }
 
 fn judge(

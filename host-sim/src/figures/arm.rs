@@ -1,8 +1,8 @@
 //! Figure 3: the planar arm under constant activations, with and without effective length.
 
-use super::chart::{Chart, Panel};
 use super::{FiguresError, Folder, TIME_STEP};
 use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
+use crate::chart::{Chart, Panel};
 use crate::engine::Arithmetic;
 use crate::reference::Mode;
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! Figure 7: what the modes cost by the number of motor units, relative to continuous recruitment, on
 //! this machine and in one run.
 
-use super::chart::{Chart, Panel};
 use super::{Case, FiguresError, Folder, PATH, TIME_STEP};
+use crate::chart::{Chart, Panel};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::reference::{Input, Mode};
 use crate::scenario::{paper_muscle, paper_muscle_of_units};

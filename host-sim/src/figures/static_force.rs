@@ -1,7 +1,7 @@
 //! Figure 4: steady force by activation, full and where recruitment starts.
 
-use super::chart::{Chart, Panel};
 use super::{Case, FiguresError, Folder, PATH, TIME_STEP, cases};
+use crate::chart::{Chart, Panel};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::reference::Input;
 use crate::trace::InputTrace;

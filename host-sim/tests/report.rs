@@ -1,0 +1,97 @@
+//! `vm report`: one page with everything in it, that needs nothing from anywhere else.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const CYCLES: &str = r#"[{
+    "case": "continuous-f32", "mode": "continuous", "arithmetic": "f32", "target": "cortex-m4f",
+    "ticks": 10, "instructions_max": 3000, "cycles_opt_mean": 1.0, "cycles_opt_p99": 1,
+    "cycles_opt_max": 1, "cycles_typ_mean": 4321.4, "cycles_typ_p99": 1, "cycles_typ_max": 4700,
+    "cycles_pess_mean": 1.0, "cycles_pess_p99": 1, "cycles_pess_max": 98765, "worst_tick": 3,
+    "replay": "cargo vm cycles --case continuous-f32 --tick 3", "state_bytes": 56,
+    "code_bytes": 6890, "stack_bytes": 600, "max_pct_f0": 0.3, "ratio": null, "budget": 98000,
+    "pass": false
+}]"#;
+
+fn report(out: &Path, cycles: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vm"))
+        .args(["report", "--out"])
+        .arg(out)
+        .arg("--cycles")
+        .arg(cycles)
+        .output()
+        .expect("vm runs")
+}
+
+#[test]
+fn the_page_has_everything_in_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, cycles) = (folder.path().join("report.html"), folder.path().join("cycles.json"));
+    fs::write(&cycles, CYCLES).expect("a file");
+    let done = report(&out, &cycles);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let page = fs::read_to_string(&out).expect("a page");
+
+    // Nothing is fetched, and nothing runs.
+    let names_svg = r#"xmlns="http://www.w3.org/2000/svg""#;
+    let without_names = page.replace(names_svg, "");
+    for foreign in ["http:", "https:", "//cdn", "<script", "<link", "<img", "@import", "url("] {
+        assert!(!without_names.contains(foreign), "{foreign}");
+    }
+    assert!(page.starts_with("<!doctype html>") && page.contains("prefers-color-scheme: dark"));
+    assert!(page.contains(r#"name="viewport" content="width=device-width"#));
+
+    // Of every tag as many are closed as opened.
+    for tag in ["table", "tr", "td", "th", "details", "div", "p", "svg", "ul", "li", "h2", "h3"] {
+        let opened =
+            page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+    // Every scenario at 1 ms has its plot, with axes, units and a legend; and there are six figures.
+    let scenarios = page.matches("error (% of F0)").count();
+    assert!(scenarios >= 38, "{scenarios} plots");
+    assert_eq!(page.matches("<svg ").count(), scenarios + 6);
+    for label in
+        ["time (s)", "force (N)", "elbow angle (degrees)", "activation U (1)", "frequency (Hz)"]
+    {
+        assert!(page.contains(label), "{label}");
+    }
+    assert!(page.matches("fixed\n").count() >= scenarios, "legends");
+
+    // The numbers are those of the other commands.
+    let golden = include_str!("../data/golden.toml");
+    for line in golden.lines().filter(|line| line.starts_with('"')) {
+        let (name, bits) = line.split_once(" = ").expect("a checksum");
+        let row = format!(
+            "<td>{}</td><td><code>{}</code>",
+            name.trim_matches('"'),
+            bits.trim_matches('"')
+        );
+        assert!(page.contains(&row), "{line}");
+    }
+    let tolerances = include_str!("../data/tolerances.csv").lines().count() - 1;
+    assert!(page.contains(&format!("{tolerances} of {tolerances}</b>comparisons")));
+    assert!(page.contains("with effective length the arm goes unstable"));
+    assert!(page.contains("98765") && page.contains(r#"<span class="bad">NO</span>"#));
+    assert!(page.contains("are the committed ones"));
+}
+
+#[test]
+fn what_is_no_table_of_cycles_is_refused_before_anything_is_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, cycles) = (folder.path().join("report.html"), folder.path().join("cycles.json"));
+    for text in ["", "{}", r#"[{"case": "continuous-f32"}]"#] {
+        fs::write(&cycles, text).expect("a file");
+        let done = report(&out, &cycles);
+        let message = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(2), "{message}");
+        assert!(
+            message.contains("cycles.json: not what cargo vm cycles --json prints"),
+            "{message}"
+        );
+    }
+    let done = report(&out, &folder.path().join("none.json"));
+    assert!(String::from_utf8_lossy(&done.stderr).contains("none.json: "));
+    assert!(!out.exists());
+}
