@@ -1,0 +1,86 @@
+//! What a channel is to do, and what a stimulator can.
+
+use core::fmt;
+
+/// Pulses of one channel, until it is told otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stimulus {
+    /// Of the phase that stimulates, µA; 0 to [`Scale::full_scale_ua`].
+    pub amplitude_ua: u32,
+    /// Of the phase that stimulates, µs; 10 to 1,000.
+    pub width_us: u16,
+    /// Between the phases, µs; 0 to 200.
+    pub gap_us: u16,
+    /// Pulses in ten seconds; 10 (one a second) to 5,000.
+    pub frequency_tenths_pps: u16,
+    /// How many times weaker, and longer, the phase is that takes the charge back; 1 to 8.
+    pub recovery: u8,
+}
+
+/// How the current source turns counts into current.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// Current at the greatest count, µA; 1 to 500,000.
+    pub full_scale_ua: u32,
+    /// The greatest count: 4095 of a converter of 12 bits.
+    pub full_scale_counts: u16,
+}
+
+/// A stimulus was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StimulusError {
+    /// The field, by its name; `duration_us` is the pulse's, which has to fit into its period.
+    pub field: &'static str,
+    /// The refused value, in the field's unit.
+    pub value: u32,
+    /// The least that is taken.
+    pub least: u32,
+    /// The most that is taken.
+    pub most: u32,
+}
+
+impl fmt::Display for StimulusError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { field, value, least, most } = self;
+        write!(f, "{field} = {value}: must be {least} to {most}")
+    }
+}
+
+impl core::error::Error for StimulusError {}
+
+pub(crate) fn within(
+    field: &'static str,
+    value: u32,
+    least: u32,
+    most: u32,
+) -> Result<(), StimulusError> {
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(StimulusError { field, value, least, most })
+    }
+}
+
+impl Stimulus {
+    /// From the start of a pulse to that of the next, µs; rounded down.
+    pub fn period_us(&self) -> u32 {
+        10_000_000 / u32::from(self.frequency_tenths_pps.max(1))
+    }
+
+    /// From the start of a pulse to its end, µs.
+    pub fn duration_us(&self) -> u32 {
+        let width = u32::from(self.width_us);
+        width + u32::from(self.gap_us) + width * u32::from(self.recovery)
+    }
+
+    /// Whether a stimulator of that scale can do it; the error names the field, its value and the limit it
+    /// broke.
+    pub fn validate(&self, scale: &Scale) -> Result<(), StimulusError> {
+        within("amplitude_ua", self.amplitude_ua, 0, scale.full_scale_ua)?;
+        within("width_us", self.width_us.into(), 10, 1000)?;
+        within("gap_us", self.gap_us.into(), 0, 200)?;
+        within("frequency_tenths_pps", self.frequency_tenths_pps.into(), 10, 5000)?;
+        within("recovery", self.recovery.into(), 1, 8)?;
+        within("duration_us", self.duration_us(), 0, self.period_us())
+    }
+}

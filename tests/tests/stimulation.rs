@@ -1,0 +1,383 @@
+//! The stimulator's pulses, as a converter and pins see them: no net charge, one channel at a time, nothing
+//! switched under current.
+
+use embedded_hal::digital::{ErrorType as PinErrorType, OutputPin};
+use embedded_hal::spi::{ErrorKind, ErrorType as SpiErrorType, Operation, SpiDevice};
+use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
+use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTransaction};
+use firmware::{Bridge, OutputError, OutputStage, Pulse, Scale, Schedule, Step, Stimulus};
+use proptest::prelude::*;
+use std::cell::RefCell;
+use std::rc::Rc;
+use system_tests::muscles::config;
+
+const CHANNELS: usize = 4;
+const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
+
+/// What is at the electrodes, and what was wrong on the way.
+#[derive(Debug, Default)]
+struct Electrodes {
+    counts: u16,
+    cathodic: bool,
+    anodic: bool,
+    channels: [bool; CHANNELS],
+    /// Counts times µs that went through each channel.
+    charges: [i64; CHANNELS],
+    problems: Vec<String>,
+    /// Converter or pins that do not answer any more.
+    broken_converter: bool,
+    broken_pins: bool,
+}
+
+type Shared = Rc<RefCell<Electrodes>>;
+
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Cathodic,
+    Anodic,
+    Channel(usize),
+}
+
+#[derive(Debug)]
+struct Pin(Shared, Place);
+
+impl PinErrorType for Pin {
+    type Error = embedded_hal::digital::ErrorKind;
+}
+
+impl Pin {
+    fn set(&mut self, level: bool) -> Result<(), embedded_hal::digital::ErrorKind> {
+        let mut electrodes = self.0.borrow_mut();
+        if electrodes.broken_pins {
+            return Err(embedded_hal::digital::ErrorKind::Other);
+        }
+        let changed = match self.1 {
+            Place::Cathodic => std::mem::replace(&mut electrodes.cathodic, level) != level,
+            Place::Anodic => std::mem::replace(&mut electrodes.anodic, level) != level,
+            Place::Channel(index) => {
+                std::mem::replace(&mut electrodes.channels[index], level) != level
+            }
+        };
+        if changed && electrodes.counts != 0 {
+            electrodes.problems.push(format!("{:?} switched under current", self.1));
+        }
+        if electrodes.cathodic && electrodes.anodic {
+            electrodes.problems.push("both sides of the bridge".to_owned());
+        }
+        Ok(())
+    }
+}
+
+impl OutputPin for Pin {
+    fn set_low(&mut self) -> Result<(), Self::Error> {
+        self.set(false)
+    }
+    fn set_high(&mut self) -> Result<(), Self::Error> {
+        self.set(true)
+    }
+}
+
+#[derive(Debug)]
+struct Converter(Shared);
+
+impl SpiErrorType for Converter {
+    type Error = ErrorKind;
+}
+
+impl SpiDevice for Converter {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        let mut electrodes = self.0.borrow_mut();
+        if electrodes.broken_converter {
+            return Err(ErrorKind::Other);
+        }
+        for operation in operations {
+            let &mut Operation::Write(&[high, low]) = operation else {
+                electrodes.problems.push("not a word to the converter".to_owned());
+                continue;
+            };
+            if high & 0xf0 != 0x30 {
+                electrodes.problems.push(format!("control bits {high:#x}"));
+            }
+            electrodes.counts = u16::from_be_bytes([high & 0x0f, low]);
+        }
+        Ok(())
+    }
+}
+
+type Stage = OutputStage<Converter, Pin, CHANNELS>;
+
+fn stage() -> (Stage, Shared) {
+    let shared = Shared::default();
+    // As after a reset that came at the worst moment.
+    *shared.borrow_mut() =
+        Electrodes { cathodic: true, channels: [true; CHANNELS], ..Electrodes::default() };
+    let pin = |place| Pin(Rc::clone(&shared), place);
+    let bridge = Bridge { cathodic: pin(Place::Cathodic), anodic: pin(Place::Anodic) };
+    let channels = std::array::from_fn(|index| pin(Place::Channel(index)));
+    let stage = Stage::new(Converter(Rc::clone(&shared)), bridge, channels).expect("a stage");
+    (stage, shared)
+}
+
+/// Puts out a step, and lets its time pass.
+fn pass(stage: &mut Stage, shared: &Shared, step: &Step) {
+    stage.apply(step).expect("an output that answers");
+    let mut electrodes = shared.borrow_mut();
+    let charge = i64::from(electrodes.counts) * i64::from(step.duration_us);
+    if charge == 0 {
+        return;
+    }
+    let on: Vec<usize> = (0..CHANNELS).filter(|&index| electrodes.channels[index]).collect();
+    match (on.as_slice(), electrodes.cathodic, electrodes.anodic) {
+        (&[channel], true, false) => electrodes.charges[channel] -= charge,
+        (&[channel], false, true) => electrodes.charges[channel] += charge,
+        other => electrodes.problems.push(format!("current with {other:?}")),
+    }
+}
+
+/// Every legal command.
+fn stimuli() -> impl Strategy<Value = Stimulus> {
+    let amplitude = prop_oneof![0..=SCALE.full_scale_ua, Just(SCALE.full_scale_ua), 0..100_u32];
+    (amplitude, 10..=1000_u16, 0..=200_u16, 10..=5000_u16, 1..=8_u8)
+        .prop_map(|(amplitude_ua, width_us, gap_us, frequency_tenths_pps, recovery)| Stimulus {
+            amplitude_ua,
+            width_us,
+            gap_us,
+            frequency_tenths_pps,
+            recovery,
+        })
+        .prop_filter("fits its period", |stimulus| stimulus.validate(&SCALE).is_ok())
+}
+
+proptest! {
+    #![proptest_config(config(20_000))]
+
+    #[test]
+    fn a_pulse_has_no_net_charge_and_the_amplitude_that_was_commanded(stimulus in stimuli()) {
+        let pulse = Pulse::new(&stimulus, &SCALE).expect("a legal command");
+        prop_assert_eq!(pulse.net_charge(), 0);
+        let ideal = f64::from(stimulus.amplitude_ua) * 4095.0 / 50_000.0;
+        let short = ideal - f64::from(pulse.phases[0].counts);
+        prop_assert!((0.0..f64::from(stimulus.recovery)).contains(&short), "{short} counts short");
+        prop_assert_eq!(pulse.phases[0].duration_us, stimulus.width_us);
+        // As the electrodes see it.
+        let (mut stage, shared) = stage();
+        for phase in pulse.phases {
+            let duration_us = phase.duration_us.into();
+            pass(&mut stage, &shared, &Step { output: Some((2, phase)), duration_us });
+        }
+        stage.neutral().expect("an output that answers");
+        let electrodes = shared.borrow();
+        prop_assert_eq!(electrodes.charges, [0; CHANNELS]);
+        prop_assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);
+    }
+}
+
+/// Commands to channels at times (µs).
+type Command = (u32, usize, Option<Stimulus>);
+
+fn commands() -> impl Strategy<Value = Vec<Command>> {
+    let stimulus = prop::option::weighted(0.9, stimuli());
+    prop::collection::vec((0..1_000_000_u32, 0..CHANNELS, stimulus), 1..12).prop_map(|mut all| {
+        all.sort_by_key(|command| command.0);
+        all
+    })
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn channels_take_turns_and_every_pulse_is_whole(commands in commands()) {
+        let (mut stage, shared) = stage();
+        let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+        let mut commands = commands.into_iter().peekable();
+        let mut now = 0;
+        while now < 1_200_000 {
+            while let Some((_, channel, stimulus)) = commands.next_if(|next| next.0 <= now) {
+                // Too much for one current source is refused; the rest goes on.
+                if let Err(error) = schedule.set(channel, stimulus) {
+                    prop_assert_eq!(error.field, "load: thousandths of the time");
+                }
+            }
+            let step = schedule.advance();
+            prop_assert!((1..=8000).contains(&step.duration_us), "{step:?}");
+            pass(&mut stage, &shared, &step);
+            now += step.duration_us;
+            let electrodes = shared.borrow();
+            prop_assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);
+            if step.output.is_none() {
+                prop_assert_eq!(electrodes.charges, [0; CHANNELS], "between pulses, at {} us", now);
+                prop_assert!(!electrodes.channels.contains(&true), "a channel left on");
+            }
+        }
+    }
+
+    /// Rhythms are kept: a pulse is late by at most one pulse of every other channel.
+    #[test]
+    fn pulses_come_when_they_are_due(stimuli in prop::array::uniform4(stimuli())) {
+        let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+        let admitted: Vec<usize> = (0..CHANNELS)
+            .filter(|&channel| schedule.set(channel, Some(stimuli[channel])).is_ok())
+            .collect();
+        let (mut now, mut pulses) = (0_u32, [0_u32; CHANNELS]);
+        while now < 1_000_000 {
+            let step = schedule.advance();
+            if let Some((channel, phase)) = step.output
+                && phase == Pulse::new(&stimuli[channel], &SCALE).expect("legal").phases[0]
+            {
+                let due = pulses[channel] * stimuli[channel].period_us();
+                let others = admitted.iter().filter(|&&other| other != channel);
+                let most: u32 = others.map(|&other| stimuli[other].duration_us()).sum();
+                prop_assert!((due..=due + most).contains(&now), "{now}, due {due} + {most}");
+                pulses[channel] += 1;
+            }
+            now += step.duration_us;
+        }
+        for channel in admitted {
+            let period = stimuli[channel].period_us();
+            let expected = 1_000_000 / period;
+            prop_assert!(pulses[channel].abs_diff(expected) <= 1 + 40_000 / period);
+        }
+    }
+}
+
+/// A pulse of 10 mA on channel 1, word by word and pin by pin.
+#[test]
+fn one_pulse_is_these_words_and_levels() {
+    let low = || PinTransaction::set(State::Low);
+    let high = || PinTransaction::set(State::High);
+    // 10 of 50 mA are 819 counts, 0x333.
+    let word = |high: u8, low: u8| {
+        [
+            SpiTransaction::transaction_start(),
+            SpiTransaction::write_vec(vec![high, low]),
+            SpiTransaction::transaction_end(),
+        ]
+    };
+    let nothing = || word(0x30, 0);
+    let words: Vec<_> =
+        [nothing(), nothing(), word(0x33, 0x33), nothing(), nothing(), word(0x33, 0x33), nothing()]
+            .concat();
+    let mut converter = SpiMock::new(&words);
+    let mut cathodic = PinMock::new(&[low(), high(), low(), low()]);
+    let mut anodic = PinMock::new(&[low(), low(), high(), low()]);
+    let mut others = [0, 2, 3].map(|_| PinMock::new(&[low(), low(), low(), low()]));
+    let mut used = PinMock::new(&[low(), high(), high(), low()]);
+    let bridge = Bridge { cathodic: cathodic.clone(), anodic: anodic.clone() };
+    let [a, b, c] = others.each_ref().map(Clone::clone);
+    let mut stage =
+        OutputStage::new(converter.clone(), bridge, [a, used.clone(), b, c]).expect("a stage");
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 50,
+        frequency_tenths_pps: 200,
+        recovery: 1,
+    };
+    let pulse = Pulse::new(&stimulus, &SCALE).expect("a legal command");
+    for phase in pulse.phases {
+        let duration_us = phase.duration_us.into();
+        stage.apply(&Step { output: Some((1, phase)), duration_us }).expect("an output");
+    }
+    stage.apply(&Step { output: None, duration_us: 100 }).expect("an output");
+    converter.done();
+    for pin in [&mut cathodic, &mut anodic, &mut used].into_iter().chain(&mut others) {
+        pin.done();
+    }
+}
+
+#[test]
+fn what_does_not_answer_leaves_the_rest_neutral() {
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 0,
+        frequency_tenths_pps: 200,
+        recovery: 4,
+    };
+    let pulse = Pulse::new(&stimulus, &SCALE).expect("a legal command");
+    let [first, _, last] =
+        pulse.phases.map(|phase| Step { output: Some((0, phase)), duration_us: 1 });
+
+    let (mut stage, shared) = stage();
+    stage.apply(&first).expect("an output that answers");
+    shared.borrow_mut().broken_converter = true;
+    assert_eq!(stage.apply(&last), Err(OutputError::Converter));
+    let electrodes = shared.borrow();
+    assert!(!electrodes.cathodic && !electrodes.anodic && electrodes.channels == [false; CHANNELS]);
+    drop(electrodes);
+
+    let (mut stage, shared) = self::stage();
+    stage.apply(&first).expect("an output that answers");
+    shared.borrow_mut().broken_pins = true;
+    assert_eq!(stage.apply(&last), Err(OutputError::Pin));
+    assert_eq!(shared.borrow().counts, 0, "no current through pins that do not switch");
+
+    let (mut stage, shared) = self::stage();
+    stage.apply(&first).expect("an output that answers");
+    let nowhere = Step { output: first.output.map(|(_, phase)| (CHANNELS, phase)), ..first };
+    assert_eq!(stage.apply(&nowhere), Err(OutputError::Channel));
+    assert_eq!(shared.borrow().counts, 0);
+    assert_eq!(shared.borrow().channels, [false; CHANNELS]);
+}
+
+#[test]
+fn what_a_stimulator_cannot_do_is_named() {
+    let good = Stimulus {
+        amplitude_ua: 1000,
+        width_us: 100,
+        gap_us: 20,
+        frequency_tenths_pps: 500,
+        recovery: 2,
+    };
+    let refused = |stimulus: Stimulus| {
+        let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+        schedule.set(0, Some(stimulus)).expect_err("refused").to_string()
+    };
+    for (stimulus, message) in [
+        (Stimulus { amplitude_ua: 50_001, ..good }, "amplitude_ua = 50001: must be 0 to 50000"),
+        (Stimulus { width_us: 9, ..good }, "width_us = 9: must be 10 to 1000"),
+        (Stimulus { gap_us: 201, ..good }, "gap_us = 201: must be 0 to 200"),
+        (
+            Stimulus { frequency_tenths_pps: 0, ..good },
+            "frequency_tenths_pps = 0: must be 10 to 5000",
+        ),
+        (Stimulus { recovery: 0, ..good }, "recovery = 0: must be 1 to 8"),
+        (
+            Stimulus { width_us: 1000, frequency_tenths_pps: 5000, ..good },
+            "duration_us = 3020: must be 0 to 2000",
+        ),
+    ] {
+        assert_eq!(refused(stimulus), message);
+    }
+    let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+    let error = schedule.set(CHANNELS, Some(good)).expect_err("refused").to_string();
+    assert_eq!(error, "channel = 4: must be 0 to 3");
+    // Two channels that would each take half of the time, and a bit.
+    let busy = Stimulus { width_us: 1000, frequency_tenths_pps: 1600, ..good };
+    schedule.set(0, Some(busy)).expect("one of them");
+    let error = schedule.set(1, Some(busy)).expect_err("refused").to_string();
+    assert_eq!(error, "load: thousandths of the time = 968: must be 0 to 900");
+}
+
+#[test]
+fn halting_stops_at_once_and_forgets() {
+    let stimulus = Stimulus {
+        amplitude_ua: 50_000,
+        width_us: 1000,
+        gap_us: 0,
+        frequency_tenths_pps: 300,
+        recovery: 8,
+    };
+    let (mut stage, shared) = stage();
+    let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+    schedule.set(3, Some(stimulus)).expect("a legal command");
+    stage.apply(&schedule.advance()).expect("an output that answers");
+    assert_eq!(shared.borrow().counts, 4088);
+    schedule.halt();
+    for _ in 0..1000 {
+        stage.apply(&schedule.advance()).expect("an output that answers");
+        assert_eq!(shared.borrow().counts, 0);
+        assert_eq!(shared.borrow().channels, [false; CHANNELS]);
+    }
+}
