@@ -5,15 +5,18 @@
 //! results go are the [`Inputs`] and [`Record`] it is given.
 #![no_std]
 
+mod controller;
 #[cfg(feature = "board")]
 pub mod end;
 mod output;
 mod rig;
+pub mod safety;
 mod scenario;
 mod schedule;
 mod stimulus;
 mod waveform;
 
+pub use controller::Controller;
 pub use output::{Bridge, OutputError, OutputStage};
 pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};
 pub use scenario::{Scenario, TICKS};

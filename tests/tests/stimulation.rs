@@ -1,122 +1,12 @@
 //! The stimulator's pulses, as a converter and pins see them: no net charge, one channel at a time, nothing
 //! switched under current.
 
-use embedded_hal::digital::{ErrorType as PinErrorType, OutputPin};
-use embedded_hal::spi::{ErrorKind, ErrorType as SpiErrorType, Operation, SpiDevice};
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTransaction};
-use firmware::{Bridge, OutputError, OutputStage, Pulse, Scale, Schedule, Step, Stimulus};
+use firmware::{Bridge, OutputError, OutputStage, Pulse, Schedule, Step, Stimulus};
 use proptest::prelude::*;
-use std::cell::RefCell;
-use std::rc::Rc;
+use system_tests::electrodes::{CHANNELS, SCALE, Shared, Stage, stage};
 use system_tests::muscles::config;
-
-const CHANNELS: usize = 4;
-const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
-
-/// What is at the electrodes, and what was wrong on the way.
-#[derive(Debug, Default)]
-struct Electrodes {
-    counts: u16,
-    cathodic: bool,
-    anodic: bool,
-    channels: [bool; CHANNELS],
-    /// Counts times µs that went through each channel.
-    charges: [i64; CHANNELS],
-    problems: Vec<String>,
-    /// Converter or pins that do not answer any more.
-    broken_converter: bool,
-    broken_pins: bool,
-}
-
-type Shared = Rc<RefCell<Electrodes>>;
-
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    Cathodic,
-    Anodic,
-    Channel(usize),
-}
-
-#[derive(Debug)]
-struct Pin(Shared, Place);
-
-impl PinErrorType for Pin {
-    type Error = embedded_hal::digital::ErrorKind;
-}
-
-impl Pin {
-    fn set(&mut self, level: bool) -> Result<(), embedded_hal::digital::ErrorKind> {
-        let mut electrodes = self.0.borrow_mut();
-        if electrodes.broken_pins {
-            return Err(embedded_hal::digital::ErrorKind::Other);
-        }
-        let changed = match self.1 {
-            Place::Cathodic => std::mem::replace(&mut electrodes.cathodic, level) != level,
-            Place::Anodic => std::mem::replace(&mut electrodes.anodic, level) != level,
-            Place::Channel(index) => {
-                std::mem::replace(&mut electrodes.channels[index], level) != level
-            }
-        };
-        if changed && electrodes.counts != 0 {
-            electrodes.problems.push(format!("{:?} switched under current", self.1));
-        }
-        if electrodes.cathodic && electrodes.anodic {
-            electrodes.problems.push("both sides of the bridge".to_owned());
-        }
-        Ok(())
-    }
-}
-
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Self::Error> {
-        self.set(false)
-    }
-    fn set_high(&mut self) -> Result<(), Self::Error> {
-        self.set(true)
-    }
-}
-
-#[derive(Debug)]
-struct Converter(Shared);
-
-impl SpiErrorType for Converter {
-    type Error = ErrorKind;
-}
-
-impl SpiDevice for Converter {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
-        let mut electrodes = self.0.borrow_mut();
-        if electrodes.broken_converter {
-            return Err(ErrorKind::Other);
-        }
-        for operation in operations {
-            let &mut Operation::Write(&[high, low]) = operation else {
-                electrodes.problems.push("not a word to the converter".to_owned());
-                continue;
-            };
-            if high & 0xf0 != 0x30 {
-                electrodes.problems.push(format!("control bits {high:#x}"));
-            }
-            electrodes.counts = u16::from_be_bytes([high & 0x0f, low]);
-        }
-        Ok(())
-    }
-}
-
-type Stage = OutputStage<Converter, Pin, CHANNELS>;
-
-fn stage() -> (Stage, Shared) {
-    let shared = Shared::default();
-    // As after a reset that came at the worst moment.
-    *shared.borrow_mut() =
-        Electrodes { cathodic: true, channels: [true; CHANNELS], ..Electrodes::default() };
-    let pin = |place| Pin(Rc::clone(&shared), place);
-    let bridge = Bridge { cathodic: pin(Place::Cathodic), anodic: pin(Place::Anodic) };
-    let channels = std::array::from_fn(|index| pin(Place::Channel(index)));
-    let stage = Stage::new(Converter(Rc::clone(&shared)), bridge, channels).expect("a stage");
-    (stage, shared)
-}
 
 /// Puts out a step, and lets its time pass.
 fn pass(stage: &mut Stage, shared: &Shared, step: &Step) {
@@ -307,13 +197,13 @@ fn what_does_not_answer_leaves_the_rest_neutral() {
     assert!(!electrodes.cathodic && !electrodes.anodic && electrodes.channels == [false; CHANNELS]);
     drop(electrodes);
 
-    let (mut stage, shared) = self::stage();
+    let (mut stage, shared) = system_tests::electrodes::stage();
     stage.apply(&first).expect("an output that answers");
     shared.borrow_mut().broken_pins = true;
     assert_eq!(stage.apply(&last), Err(OutputError::Pin));
     assert_eq!(shared.borrow().counts, 0, "no current through pins that do not switch");
 
-    let (mut stage, shared) = self::stage();
+    let (mut stage, shared) = system_tests::electrodes::stage();
     stage.apply(&first).expect("an output that answers");
     let nowhere = Step { output: first.output.map(|(_, phase)| (CHANNELS, phase)), ..first };
     assert_eq!(stage.apply(&nowhere), Err(OutputError::Channel));

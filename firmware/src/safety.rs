@@ -1,0 +1,386 @@
+//! Whether stimulation may go on: limits, inputs that must make sense, and faults that stay until somebody has
+//! seen them. One pass per tick, in integers, without generics.
+//!
+//! What shaped the limits: IEC 60601-2-10:2012, for stimulators in physical medicine, allows into 500 Ω at most
+//! 300 mJ per pulse and, up to 400 Hz, 50 mA r.m.s.; and asks for particular care above 2 mA r.m.s. per cm² of
+//! electrode. This is no claim of conformity, which nobody can make for a module; and equipment with implanted
+//! electrodes, as in intramuscular FES, is outside of that standard: its limits come from the charge per phase
+//! that the electrode in question bears.
+
+use crate::stimulus::Stimulus;
+
+/// Channels that are supervised together.
+pub const CHANNELS: usize = 4;
+
+/// What is allowed; everything else is a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Amplitude, µA.
+    pub amplitude_ua: u32,
+    /// Width of the phase that stimulates, µs.
+    pub width_us: u16,
+    /// Pulses in ten seconds.
+    pub frequency_tenths_pps: u16,
+    /// Charge of a phase, nC.
+    pub charge_nc: u32,
+    /// Root of the mean square of a channel's current, µA.
+    pub rms_ua: u32,
+    /// How much an amplitude may rise from pulse to pulse, µA. Faster demands are slowed down, and are no fault.
+    pub rise_ua: u32,
+    /// Stimulation since the last arming, ms.
+    pub session_ms: u32,
+    /// Longest silence of the host, ms.
+    pub silence_ms: u32,
+    /// Of each electrode that stimulates, Ω: below is a short, above an electrode that has come off.
+    pub impedance_ohm: (u32, u32),
+    /// mV.
+    pub supply_mv: (u32, u32),
+    /// Path length of the muscle, µm.
+    pub path_um: (i32, i32),
+    /// How far that may move in a tick, µm.
+    pub path_step_um: u32,
+    /// How long that may stay the same to the µm while there is stimulation, ms: a sensor has noise.
+    pub stuck_ms: u32,
+}
+
+impl Limits {
+    /// For surface electrodes of 25 cm² and adults: 20 mA r.m.s. are 0.8 mA/cm², and 40 µC at 100 mA no more than
+    /// 4 mJ in 500 Ω, both phases.
+    pub const SURFACE: Self = Self {
+        amplitude_ua: 100_000,
+        width_us: 500,
+        frequency_tenths_pps: 1000,
+        charge_nc: 40_000,
+        rms_ua: 20_000,
+        rise_ua: 2_000,
+        session_ms: 30 * 60 * 1000,
+        silence_ms: 100,
+        impedance_ohm: (100, 5_000),
+        supply_mv: (3_000, 4_300),
+        path_um: (50_000, 500_000),
+        path_step_um: 1_000,
+        stuck_ms: 2_000,
+    };
+}
+
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Fault {
+    /// Nothing yet: this is how everything starts.
+    Boot = 1,
+    /// An amplitude beyond its limit was asked for.
+    Amplitude = 2,
+    /// A width.
+    Width = 3,
+    /// A frequency.
+    Frequency = 4,
+    /// A charge per phase.
+    Charge = 5,
+    /// A mean square of current.
+    RootMeanSquare = 6,
+    /// Stimulation has lasted as long as it may.
+    Session = 7,
+    /// The host was silent for too long.
+    Silence = 8,
+    /// An electrode is shorted.
+    ElectrodeShort = 9,
+    /// An electrode has come off.
+    ElectrodeOpen = 10,
+    /// The supply is out of its range.
+    Supply = 11,
+    /// The sensor gives no number.
+    SensorMissing = 12,
+    /// The sensor's number is out of its range.
+    SensorRange = 13,
+    /// It jumped.
+    SensorJump = 14,
+    /// It is stuck.
+    SensorStuck = 15,
+    /// The tick before was late or did not finish.
+    Deadline = 16,
+    /// The watchdog had to restart the controller.
+    Watchdog = 17,
+    /// State or parameters are not what the last tick left.
+    Checksum = 18,
+    /// The output stage did not answer.
+    Output = 19,
+    /// A stimulus was asked for that the stimulator cannot do.
+    Request = 20,
+}
+
+/// What a tick sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed {
+    /// The host was heard of since the last tick.
+    pub host_heard: bool,
+    /// Ω of every channel; none where it was not measured yet.
+    pub impedance_ohm: [Option<u32>; CHANNELS],
+    /// mV.
+    pub supply_mv: u32,
+    /// Path length, µm; none if the sensor gave no number.
+    pub path_um: Option<i32>,
+    /// The last tick finished, and in time.
+    pub in_time: bool,
+    /// The controller was restarted by its watchdog.
+    pub restarted_by_watchdog: bool,
+    /// Checksum of state and parameters now, and as the last tick left them.
+    pub checksums: [u32; 2],
+    /// The output stage has answered.
+    pub output_answers: bool,
+}
+
+/// Where the two steps of arming are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Off because of the fault, until somebody names it.
+    Latched(Fault),
+    /// Off; the fault has been named, and arming may follow within so many ms.
+    Acknowledged {
+        /// ms that are left.
+        left_ms: u32,
+        /// The fault that comes back when they are over.
+        fault: Fault,
+    },
+    /// Stimulation is allowed.
+    Armed,
+}
+
+/// Why arming was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotArmed {
+    /// No fault of that name is latched.
+    OtherFault,
+    /// The fault has to be acknowledged first.
+    NotAcknowledged,
+    /// The cause is still there.
+    StillThere(Fault),
+}
+
+/// From acknowledging to arming, ms.
+const ARMING_MS: u32 = 10_000;
+
+/// Supervises stimulation.
+#[derive(Clone, Debug)]
+pub struct Supervisor {
+    limits: Limits,
+    state: State,
+    /// What was wrong with the inputs of the last tick, if anything.
+    wrong: Option<Fault>,
+    silence_ms: u32,
+    session_ms: u32,
+    stuck_ms: u32,
+    path_before: Option<i32>,
+    /// How far each amplitude has risen, thousandths of µA.
+    risen: [u64; CHANNELS],
+}
+
+/// Nothing on any channel.
+const NEUTRAL: [Option<Stimulus>; CHANNELS] = [None; CHANNELS];
+
+impl Supervisor {
+    /// Off, as at every boot.
+    pub const fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            state: State::Latched(Fault::Boot),
+            wrong: Some(Fault::Boot),
+            silence_ms: 0,
+            session_ms: 0,
+            stuck_ms: 0,
+            path_before: None,
+            risen: [0; CHANNELS],
+        }
+    }
+
+    /// Where it is.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// First step: somebody has seen the fault, and says which.
+    pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
+        match self.state {
+            State::Latched(fault) | State::Acknowledged { fault, .. } if fault == seen => {
+                self.state = State::Acknowledged { left_ms: ARMING_MS, fault };
+                Ok(())
+            }
+            _ => Err(NotArmed::OtherFault),
+        }
+    }
+
+    /// Second step: stimulation may begin, from nothing, if the last tick saw nothing wrong.
+    pub fn arm(&mut self) -> Result<(), NotArmed> {
+        let State::Acknowledged { .. } = self.state else { return Err(NotArmed::NotAcknowledged) };
+        if let Some(fault) = self.wrong {
+            return Err(NotArmed::StillThere(fault));
+        }
+        self.state = State::Armed;
+        self.session_ms = 0;
+        self.stuck_ms = 0;
+        self.risen = [0; CHANNELS];
+        Ok(())
+    }
+
+    /// One tick of 1 ms: what of the request may be put out until the next one.
+    pub fn tick(
+        &mut self,
+        observed: &Observed,
+        requested: &[Option<Stimulus>; CHANNELS],
+    ) -> [Option<Stimulus>; CHANNELS] {
+        let stimulates = requested.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0);
+        self.wrong = self.wrong_with(observed, requested, stimulates);
+        match (self.state, self.wrong) {
+            (State::Armed, None) => {
+                let demand = self.wrong_request(requested);
+                if let Some(fault) = demand {
+                    return self.latch(fault);
+                }
+                self.session_ms = self.session_ms.saturating_add(u32::from(stimulates));
+                self.slowed(requested)
+            }
+            (State::Armed, Some(fault)) => self.latch(fault),
+            (State::Acknowledged { left_ms: 0, fault }, _) => self.latch(fault),
+            (State::Acknowledged { left_ms, fault }, _) => {
+                self.state = State::Acknowledged { left_ms: left_ms - 1, fault };
+                NEUTRAL
+            }
+            (State::Latched(_), _) => NEUTRAL,
+        }
+    }
+
+    /// Latches a fault that somebody else has found.
+    pub fn fail(&mut self, fault: Fault) {
+        if self.state == State::Armed {
+            self.latch(fault);
+        }
+    }
+
+    fn latch(&mut self, fault: Fault) -> [Option<Stimulus>; CHANNELS] {
+        self.state = State::Latched(fault);
+        NEUTRAL
+    }
+
+    /// What is wrong with what a tick sees; what is worst first.
+    fn wrong_with(
+        &mut self,
+        observed: &Observed,
+        requested: &[Option<Stimulus>; CHANNELS],
+        stimulates: bool,
+    ) -> Option<Fault> {
+        let limits = self.limits;
+        self.silence_ms = if observed.host_heard { 0 } else { self.silence_ms.saturating_add(1) };
+        let sensor = self.wrong_sensor(observed.path_um, stimulates);
+        let faults = [
+            (observed.checksums[0] != observed.checksums[1]).then_some(Fault::Checksum),
+            observed.restarted_by_watchdog.then_some(Fault::Watchdog),
+            (!observed.output_answers).then_some(Fault::Output),
+            (!observed.in_time).then_some(Fault::Deadline),
+            outside(observed.supply_mv, limits.supply_mv).map(|_| Fault::Supply),
+            wrong_electrode(observed, requested, limits.impedance_ohm),
+            sensor,
+            (self.silence_ms > limits.silence_ms).then_some(Fault::Silence),
+        ];
+        faults.into_iter().flatten().next()
+    }
+
+    fn wrong_sensor(&mut self, path_um: Option<i32>, stimulates: bool) -> Option<Fault> {
+        let Some(path) = path_um else { return Some(Fault::SensorMissing) };
+        // The first number there is moves from nowhere.
+        let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
+        self.path_before = Some(path);
+        let (least, most) = self.limits.path_um;
+        let stays = stimulates && moved == 0;
+        self.stuck_ms = if stays { self.stuck_ms.saturating_add(1) } else { 0 };
+        if !(least..=most).contains(&path) {
+            Some(Fault::SensorRange)
+        } else if moved > self.limits.path_step_um {
+            Some(Fault::SensorJump)
+        } else if self.stuck_ms > self.limits.stuck_ms {
+            Some(Fault::SensorStuck)
+        } else {
+            None
+        }
+    }
+
+    /// What is wrong with a request, and with how long requests have gone on.
+    fn wrong_request(&self, requested: &[Option<Stimulus>; CHANNELS]) -> Option<Fault> {
+        let limits = &self.limits;
+        if self.session_ms >= limits.session_ms {
+            return Some(Fault::Session);
+        }
+        requested.iter().flatten().find_map(|stimulus| {
+            let Stimulus { amplitude_ua, width_us, frequency_tenths_pps, .. } = *stimulus;
+            if amplitude_ua > limits.amplitude_ua {
+                Some(Fault::Amplitude)
+            } else if width_us > limits.width_us {
+                Some(Fault::Width)
+            } else if frequency_tenths_pps > limits.frequency_tenths_pps {
+                Some(Fault::Frequency)
+            } else if charge_nc(stimulus) > u64::from(limits.charge_nc) {
+                Some(Fault::Charge)
+            } else if mean_square(stimulus) > u64::from(limits.rms_ua).pow(2) {
+                Some(Fault::RootMeanSquare)
+            } else {
+                None
+            }
+        })
+    }
+
+    /// The request, with amplitudes that have risen as far as they may.
+    fn slowed(&mut self, requested: &[Option<Stimulus>; CHANNELS]) -> [Option<Stimulus>; CHANNELS] {
+        let mut allowed = *requested;
+        for (stimulus, risen) in allowed.iter_mut().zip(&mut self.risen) {
+            let Some(stimulus) = stimulus else {
+                *risen = 0;
+                continue;
+            };
+            // In a tick of 1 ms there are f/10,000 pulses, f being in tenths.
+            let rise = u64::from(self.limits.rise_ua) * u64::from(stimulus.frequency_tenths_pps);
+            *risen = (*risen + rise / 10).min(u64::from(stimulus.amplitude_ua) * 1000);
+            // No more than the amplitude, which has 32 bits.
+            stimulus.amplitude_ua = (*risen / 1000) as u32;
+        }
+        allowed
+    }
+}
+
+/// Below or above a range: false or true.
+fn outside(value: u32, (least, most): (u32, u32)) -> Option<bool> {
+    if value < least {
+        Some(false)
+    } else if value > most {
+        Some(true)
+    } else {
+        None
+    }
+}
+
+/// The first electrode that stimulates and does not look like one.
+fn wrong_electrode(
+    observed: &Observed,
+    requested: &[Option<Stimulus>; CHANNELS],
+    range: (u32, u32),
+) -> Option<Fault> {
+    observed.impedance_ohm.iter().zip(requested).find_map(|(impedance, stimulus)| {
+        stimulus.filter(|stimulus| stimulus.amplitude_ua > 0)?;
+        let above = outside((*impedance)?, range)?;
+        Some(if above { Fault::ElectrodeOpen } else { Fault::ElectrodeShort })
+    })
+}
+
+/// Charge of a phase, nC, rounded up: µA times µs are thousandths of it.
+fn charge_nc(stimulus: &Stimulus) -> u64 {
+    (u64::from(stimulus.amplitude_ua) * u64::from(stimulus.width_us)).div_ceil(1000)
+}
+
+/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, for the phase that takes the charge back is k times
+/// weaker and longer. Saturated, and amplitudes beyond 1 A taken as that: no limit is there.
+fn mean_square(stimulus: &Stimulus) -> u64 {
+    let amplitude = u64::from(stimulus.amplitude_ua.min(1_000_000));
+    let recovery = u64::from(stimulus.recovery.max(1));
+    let on_us = u64::from(stimulus.width_us) * (recovery + 1);
+    let frequency = u64::from(stimulus.frequency_tenths_pps);
+    // 10^12 times 2^24 fits; 10^7 is µs in a second, and tenths of a pulse.
+    (amplitude * amplitude * on_us / 10_000).saturating_mul(frequency) / recovery / 1_000
+}

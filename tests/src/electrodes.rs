@@ -1,0 +1,132 @@
+//! A converter and pins that say what is at the electrodes.
+
+use embedded_hal::digital::{ErrorType as PinErrorType, OutputPin};
+use embedded_hal::spi::{ErrorKind, ErrorType as SpiErrorType, Operation, SpiDevice};
+use firmware::{Bridge, OutputStage, Scale};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Channels of the stage.
+pub const CHANNELS: usize = 4;
+/// 50 mA by twelve bits.
+pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
+
+/// What is at the electrodes, and what was wrong on the way.
+#[derive(Debug, Default)]
+pub struct Electrodes {
+    /// Of the converter.
+    pub counts: u16,
+    /// Levels of the bridge's pins.
+    pub cathodic: bool,
+    /// See `cathodic`.
+    pub anodic: bool,
+    /// Levels of the channels' pins.
+    pub channels: [bool; CHANNELS],
+    /// Counts times µs that went through each channel.
+    pub charges: [i64; CHANNELS],
+    /// What must not be.
+    pub problems: Vec<String>,
+    /// Converter or pins that do not answer any more.
+    pub broken_converter: bool,
+    /// See `broken_converter`.
+    pub broken_pins: bool,
+}
+
+/// Electrodes that converter, pins and test share.
+pub type Shared = Rc<RefCell<Electrodes>>;
+
+/// Where a pin is.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// In the bridge.
+    Cathodic,
+    /// In the bridge.
+    Anodic,
+    /// At a channel.
+    Channel(usize),
+}
+
+/// A pin that tells the electrodes its level.
+#[derive(Debug)]
+pub struct Pin(Shared, Place);
+
+impl PinErrorType for Pin {
+    type Error = embedded_hal::digital::ErrorKind;
+}
+
+impl Pin {
+    fn set(&mut self, level: bool) -> Result<(), embedded_hal::digital::ErrorKind> {
+        let mut electrodes = self.0.borrow_mut();
+        if electrodes.broken_pins {
+            return Err(embedded_hal::digital::ErrorKind::Other);
+        }
+        let changed = match self.1 {
+            Place::Cathodic => std::mem::replace(&mut electrodes.cathodic, level) != level,
+            Place::Anodic => std::mem::replace(&mut electrodes.anodic, level) != level,
+            Place::Channel(index) => {
+                std::mem::replace(&mut electrodes.channels[index], level) != level
+            }
+        };
+        // With a converter that does not answer there is no other way.
+        if changed && electrodes.counts != 0 && !electrodes.broken_converter {
+            electrodes.problems.push(format!("{:?} switched under current", self.1));
+        }
+        if electrodes.cathodic && electrodes.anodic {
+            electrodes.problems.push("both sides of the bridge".to_owned());
+        }
+        Ok(())
+    }
+}
+
+impl OutputPin for Pin {
+    fn set_low(&mut self) -> Result<(), Self::Error> {
+        self.set(false)
+    }
+    fn set_high(&mut self) -> Result<(), Self::Error> {
+        self.set(true)
+    }
+}
+
+/// A converter that tells the electrodes its count.
+#[derive(Debug)]
+pub struct Converter(Shared);
+
+impl SpiErrorType for Converter {
+    type Error = ErrorKind;
+}
+
+impl SpiDevice for Converter {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        let mut electrodes = self.0.borrow_mut();
+        if electrodes.broken_converter {
+            return Err(ErrorKind::Other);
+        }
+        for operation in operations {
+            let &mut Operation::Write(&[high, low]) = operation else {
+                electrodes.problems.push("not a word to the converter".to_owned());
+                continue;
+            };
+            if high & 0xf0 != 0x30 {
+                electrodes.problems.push(format!("control bits {high:#x}"));
+            }
+            electrodes.counts = u16::from_be_bytes([high & 0x0f, low]);
+        }
+        Ok(())
+    }
+}
+
+/// A stage on fakes.
+pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
+
+/// A stage, and what it drives.
+pub fn stage() -> (Stage, Shared) {
+    let shared = Shared::default();
+    // As after a reset that came at the worst moment.
+    *shared.borrow_mut() =
+        Electrodes { cathodic: true, channels: [true; CHANNELS], ..Electrodes::default() };
+    let pin = |place| Pin(Rc::clone(&shared), place);
+    let bridge = Bridge { cathodic: pin(Place::Cathodic), anodic: pin(Place::Anodic) };
+    let channels = std::array::from_fn(|index| pin(Place::Channel(index)));
+    let stage = Stage::new(Converter(Rc::clone(&shared)), bridge, channels).expect("a stage");
+    (stage, shared)
+}
