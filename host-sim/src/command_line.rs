@@ -337,6 +337,14 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
 }
 
 fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
+    // Before all is measured, and not after.
+    trace::check_folder(&args.out)?;
+    if let Some(cycles) = &args.cycles
+        && trace::same_file(&args.out, cycles)
+    {
+        let out = args.out.display();
+        return Err(format!("--out {out}: must be another file than --cycles's").into());
+    }
     let page = report::page(args.cycles.as_deref())?;
     trace::write_atomically(&args.out, page.as_bytes())?;
     Ok(())

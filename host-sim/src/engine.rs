@@ -273,7 +273,8 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
     }
 
     fn watch(&self, watch: &mut dyn FnMut(u64)) {
-        self.state.words().for_each(|word| watch(word.into()));
+        let tiring = self.tiring.iter().flat_map(|tiring| tiring.state.words());
+        self.state.words().chain(tiring).for_each(|word| watch(word.into()));
     }
 }
 

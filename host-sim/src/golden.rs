@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const COMMITTED: &str = include_str!("../data/golden.toml");
+/// The committed file.
+pub const COMMITTED: &str = include_str!("../data/golden.toml");
 
 /// The committed checksums, and why they are what they are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -10,6 +10,7 @@ pub use ledger::{Ledger, LedgerError};
 pub use space::{KEYS, Key, Space, SpaceError, Variation};
 
 use crate::engine::{self, Arithmetic};
+use crate::golden;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use std::path::Path;
@@ -39,6 +40,14 @@ pub struct Worst {
     pub status: String,
 }
 
+/// Which model made a table: its version, and a checksum of its golden bits, so that no table is gone on with by
+/// another one.
+fn model() -> String {
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let bits = crc.checksum(golden::COMMITTED.as_bytes());
+    format!("vm {} with golden bits {bits:08x}", env!("CARGO_PKG_VERSION"))
+}
+
 /// Columns of an arithmetic.
 const MEASURED: [&str; 4] = ["max_pct_f0", "rms_pct_f0", "bias_pct_f0", "status"];
 
@@ -52,13 +61,22 @@ impl Sweep {
             columns.extend(MEASURED.map(|column| format!("{name}_{column}")));
         }
         columns.push("problem".to_owned());
-        [format!("# vm sweep {}", self.arguments), columns.join(",")]
+        [format!("# vm sweep {} # {}", self.arguments, model()), columns.join(",")]
+    }
+
+    /// What a case's row begins with.
+    fn begin(&self, number: usize) -> Vec<String> {
+        let case = self.space.case(number);
+        let mut row = vec![number.to_string(), engine::mode_name(case.mode).to_owned()];
+        row.extend(case.values.iter().map(f64::to_string));
+        row
     }
 
     /// Computes what is not in the table yet. When all is, the table is put in order, so that it has the same
     /// bytes however often it was interrupted.
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
-        let mut ledger = Ledger::open(output, &self.head(), self.space.count())?;
+        let begin = |case| self.begin(case);
+        let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
         let missing = ledger.missing();
         let progress = ProgressBar::new(self.space.count() as u64);
         progress.set_position((self.space.count() - missing.len()) as u64);
@@ -84,9 +102,8 @@ impl Sweep {
 
     /// A case as a row of the table.
     fn row(&self, number: usize) -> Vec<String> {
+        let mut row = self.begin(number);
         let case = self.space.case(number);
-        let mut row = vec![number.to_string(), engine::mode_name(case.mode).to_owned()];
-        row.extend(case.values.iter().map(f64::to_string));
         let measured = case
             .errors(&self.arithmetics)
             .unwrap_or_else(|refusal| vec![Err(refusal); self.arithmetics.len()]);

@@ -240,6 +240,18 @@ pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> 
     write_atomically(path, &bytes)
 }
 
+/// Whether a file can be where it is to be written: its folder is there.
+pub fn check_folder(path: &Path) -> Result<(), TraceError> {
+    let folder = folder_of(path);
+    let error = |source| file_error(folder, source);
+    let found = std::fs::metadata(folder).map_err(error)?;
+    if found.is_dir() { Ok(()) } else { Err(error(std::io::ErrorKind::NotADirectory.into())) }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Writes a file beside its place and moves it there; what is no regular file, such as a pipe, is
 /// written to as it is, and a link is followed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
@@ -248,7 +260,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
     if place.exists() && !place.is_file() {
         return std::fs::write(&place, bytes).map_err(error);
     }
-    let folder = place.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(&place);
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {

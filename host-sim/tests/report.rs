@@ -91,6 +91,12 @@ fn what_is_no_table_of_cycles_is_refused_before_anything_is_measured() {
             "{message}"
         );
     }
+    fs::write(&cycles, CYCLES).expect("a file");
+    let message = |done: Output| String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(message(report(&cycles, &cycles)).contains("must be another file than --cycles's"));
+    assert_eq!(fs::read_to_string(&cycles).expect("a file"), CYCLES);
+    let nowhere = message(report(&folder.path().join("none/report.html"), &cycles));
+    assert!(nowhere.contains("none: No such file"), "{nowhere}");
     let done = report(&out, &folder.path().join("none.json"));
     assert!(String::from_utf8_lossy(&done.stderr).contains("none.json: "));
     assert!(!out.exists());

@@ -173,6 +173,8 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
     for (line, words) in [
         (row.to_owned(), &["line 4, column case: 0 is there twice"][..]),
         (row.replacen('0', "1", 1), &["\"1\": must be a whole number below 1"]),
+        (row.replacen("97.5", "97", 1), &["column mass_g: \"97\": case 0 has 97.5"]),
+        (row.replacen("fes", "continuous", 1), &["column mode: \"continuous\": case 0 has fes"]),
         ("0,fes".to_owned(), &["2 cells"]),
     ] {
         let spoilt = format!("{text}{line}\n");
@@ -180,6 +182,15 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
         refused(&grid, &output, words);
         assert_eq!(fs::read_to_string(&output).expect("a file"), spoilt);
     }
+    fs::write(&output, &text).expect("a file");
+    // Numbers are the same however they are written.
+    fs::write(&output, &text).expect("a file");
+    swept(&["--vary", "tick_ms= 2.0", "--modes", "fes"], &output);
+    assert_eq!(fs::read_to_string(&output).expect("a file"), text);
+    // Of another model.
+    let other = text.replacen("golden bits ", "golden bits 0", 1);
+    fs::write(&output, other).expect("a file");
+    refused(&grid, &output, &["another sweep's table"]);
     fs::write(&output, &text).expect("a file");
     let other = File::open(&output).expect("a file");
     other.lock().expect("a lock");
@@ -197,9 +208,11 @@ fn what_cannot_vary_is_named() {
         (&["--vary", "mass_g=1:5"], &["mass_g: a grid needs values"]),
         (&["--random", "5", "--vary", "mass_g=5:1"], &["mass_g = 5:1: must go up"]),
         (&["--vary", "mass_g=1", "--vary", "mass_g=2"], &["mass_g: given twice"]),
-        (&["--random", "0"], &["0 cases: must be 1 to 100000000"]),
+        (&["--random", "0"], &["0 cases: must be 1 to 1000000"]),
         (&["--arithmetics", "reference"], &["--arithmetics reference"]),
         (&["--seed", "3"], &["--random"]),
+        (&["--modes", "fes,fes"], &["--modes fes: given twice"]),
+        (&["--arithmetics", "f32,f32"], &["--arithmetics f32: given twice"]),
     ] {
         refused(arguments, &output, words);
     }

@@ -59,6 +59,7 @@ fn check<S: Scalar>(
             prop_assert!(error <= most, "{p:?} U {activation}, {back} mA: {error:e} > {most:e}");
         } else {
             prop_assert_eq!(status, PulseStatus::UNREACHABLE);
+            prop_assert!(activation > 0.0, "nothing can always be recruited");
             let greatest = 500.0_f64.min(p.saturation * 1e5);
             prop_assert!((back - greatest).abs() <= 1e-4 + 1e-6 * greatest, "{back} mA");
             prop_assert!(exact(p, greatest, width) <= activation + most);
@@ -74,6 +75,7 @@ fn check<S: Scalar>(
             prop_assert!(error <= most, "{p:?} U {activation}, {back} us: {error:e} > {most:e}");
         } else {
             prop_assert_eq!(status, PulseStatus::UNREACHABLE);
+            prop_assert!(activation > 0.0, "nothing can always be recruited");
             prop_assert!(exact(p, amplitude, 5000.0) <= activation + most);
         }
     }
@@ -184,6 +186,10 @@ fn what_a_pulse_cannot_be_is_clipped_and_flagged() {
     assert_eq!(status, both);
     assert_eq!(curve.amplitude_for(f32::NAN, 200.0).1, PulseStatus::ACTIVATION_NOT_FINITE);
     assert_eq!(curve.width_for(0.5, 7.0), (5000.0, PulseStatus::UNREACHABLE));
+    // Nothing is recruited by any of these, and needs no flag.
+    assert_eq!(curve.width_for(0.0, 2.0), (5000.0, PulseStatus::empty()));
+    assert_eq!(curve.amplitude_for(0.0, 1.0), (500.0, PulseStatus::empty()));
+    assert_eq!(curve.amplitude_for(0.0, 0.0), (500.0, PulseStatus::empty()));
 
     let refused = |p: RecruitmentCurveParams| {
         RecruitmentCurve::<Fixed>::build(&p).expect_err("refused").to_string()

@@ -13,6 +13,7 @@ use crate::error::{ParameterError, within};
 use crate::muscle::Output;
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::state::{RestoreError, Saved};
 use crate::time_step::TimeStep;
 
 /// From this frequency on, λ is 1; pps.
@@ -59,11 +60,19 @@ impl FatigueParams {
 pub struct FatigueState<S: Scalar> {
     /// Most of fit, in whole steps.
     steps: S,
-    /// The rest of it, within a step either way: at 1, `f32` is too coarse for what a tick changes.
+    /// The rest of it: at 1, `f32` is too coarse for what a tick changes.
     rest: S::Slow,
 }
 
 impl<S: Scalar> FatigueState<S> {
+    /// How many words [`words`](Self::words) gives.
+    pub const WORDS: usize = 1 + S::SLOW_WORDS;
+
+    /// The bits, for storage and comparison; [`Fatigue::restore`] takes them back.
+    pub fn words(&self) -> impl Iterator<Item = S::Bits> {
+        core::iter::once(self.steps.to_bits()).chain(S::slow_words(self.rest))
+    }
+
     /// Fitness fit, 0..1.
     pub fn fitness(&self) -> S {
         (self.steps + S::of(self.rest)).max(S::ZERO).min(S::ONE)
@@ -71,7 +80,7 @@ impl<S: Scalar> FatigueState<S> {
 }
 
 /// A step of fitness, of which 1 is a whole number.
-const STEP: f64 = 1.0 / 1024.0;
+const STEP: f64 = 1.0 / 16384.0;
 
 /// Fatigue and recovery, for a time step: constant coefficients.
 ///
@@ -128,6 +137,20 @@ impl<S: Scalar> Fatigue<S> {
     /// A muscle that has rested for long.
     pub fn rested(&self) -> FatigueState<S> {
         FatigueState { steps: S::ONE, rest: S::ZERO.slow() }
+    }
+
+    /// A state saved by [`FatigueState::words`], refused unless it is one that a muscle can be in.
+    pub fn restore(
+        &self,
+        words: impl IntoIterator<Item = S::Bits>,
+    ) -> Result<FatigueState<S>, RestoreError> {
+        let mut saved = Saved::new(words.into_iter(), FatigueState::<S>::WORDS);
+        let share = |value| self.activation.contains(value);
+        let steps = saved.number(share)?;
+        // A tick may bring more than a step.
+        let rest = saved.slow(&Range { least: -S::ONE, most: S::ONE })?;
+        saved.finished()?;
+        Ok(FatigueState { steps, rest })
     }
 
     /// One tick at an activation (clipped to 0..1, not-a-number to 0) and a stimulation frequency, in pps

@@ -147,7 +147,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
     }
 
     /// The amplitude (mA) with which a pulse of some width recruits an activation; for 0, the greatest that
-    /// recruits nothing.
+    /// recruits nothing. To rounding: at the very ends, U may come back a little above 0 or below 1.
     pub fn amplitude_for(&self, activation: S, width: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (width, w) = self.admit_width(width);
         let (strength, u) = self.strength_for(activation);
@@ -159,12 +159,12 @@ impl<S: Scalar> RecruitmentCurve<S> {
         if reachable {
             (self.amplitudes.clip(wanted.as_quantity(&self.saturation)).0, w | u)
         } else {
-            (most, w | u | PulseStatus::UNREACHABLE)
+            (most, w | u | unreachable(activation))
         }
     }
 
     /// The width (µs) with which a pulse of some amplitude recruits an activation; for 0, the greatest that
-    /// recruits nothing.
+    /// recruits nothing. To rounding, as for the amplitude.
     pub fn width_for(&self, activation: S, amplitude: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (amplitude, a) = self.admit_amplitude(amplitude);
         let (strength, u) = self.strength_for(activation);
@@ -176,7 +176,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
         if reachable {
             (self.widths.clip(wanted.as_quantity(&self.chronaxie)).0, a | u)
         } else {
-            (most, a | u | PulseStatus::UNREACHABLE)
+            (most, a | u | unreachable(activation))
         }
     }
 
@@ -229,6 +229,11 @@ fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     let rest = if first { x } else { S::ONE - x };
     let value = half(rest + rest) * S::HALF;
     if first { value } else { S::ONE - value }
+}
+
+/// The flag of the greatest amplitude or width, where that is not enough: to recruit nothing, it is.
+fn unreachable<S: Scalar>(activation: S) -> PulseStatus {
+    if activation > S::ZERO { PulseStatus::UNREACHABLE } else { PulseStatus::empty() }
 }
 
 fn flags(admission: Admission, clipped: PulseStatus, not_finite: PulseStatus) -> PulseStatus {

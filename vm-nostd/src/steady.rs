@@ -8,7 +8,8 @@
 //!
 //! A wanted force tells the tendon's length, by the inverse of F_se, and with it that of the fascicles; at a
 //! given length and frequency all but U is then known. The inverse needs no search; only where the force
-//! cannot be had, the nearest that can be is found by halving.
+//! cannot be had, the nearest that can be is found by halving, and where the tendon is so long that there might
+//! be several balances, the answer is tried that way.
 
 use crate::activation::ActivationFrequency;
 use crate::domain::{Domain, Range, Status};
@@ -32,6 +33,10 @@ pub struct SteadyFes<S: Scalar, const N: usize> {
     tendon: Tendon<S>,
     tendon_inverse: TendonInverse<S>,
     firing: S,
+    rounding: S,
+    promised: S,
+    /// More than one balance cannot be ruled out.
+    ambiguous: bool,
     /// N, and one over it.
     force: S::Factor,
     per_force: S::Factor,
@@ -68,13 +73,29 @@ struct Balance<S> {
     active: S,
     /// max(0, F_pe1 + Σ pcsa Af F_pe2), F0.
     passive: S,
-    /// F_se, F0.
+    /// F_se, F0, and whether it is more than can be told.
     tendon: S,
+    saturated: bool,
     fascicle_length: S,
+}
+
+impl<S: Scalar> Steady<S> {
+    fn unreachable(self, unreachable: bool) -> Self {
+        let mut status = self.status;
+        status.set(Status::FORCE_UNREACHABLE, unreachable);
+        Self { status, ..self }
+    }
 }
 
 /// Halvings that bring a length to its last bit.
 const HALVINGS: usize = 40;
+/// A force that is so little beyond what can be held counts as held, F0: a tenth of what is promised.
+const ROUNDING: f64 = 1e-4;
+/// How far the force that an activation holds may be from the one it was found for, F0.
+const PROMISED: f64 = 1e-3;
+/// With longer tendons, in fascicle lengths, the fascicles can pull less the further they lengthen by more than
+/// the tendon does: there may be several lengths at which they balance, not all of them stable.
+const LONGEST_PLAIN_TENDON: f64 = 5.0;
 
 impl<S: Scalar, const N: usize> SteadyFes<S, N> {
     /// Builds the steady states of a muscle, or refuses what [`FesMuscle`] refuses.
@@ -103,12 +124,16 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             tendon: Tendon::new(&elements.tendon, fascicle, tendon, step),
             tendon_inverse: TendonInverse::new(&elements.tendon, fascicle, tendon),
             firing: S::from_f64(SagParams::FIRING),
+            rounding: S::from_f64(ROUNDING),
+            promised: S::from_f64(PROMISED),
+            ambiguous: tendon > LONGEST_PLAIN_TENDON * fascicle,
             force: S::force_factor(newtons),
             per_force: S::per_newton(1.0 / newtons),
         })
     }
 
-    /// The force that an input holds, once nothing changes any more.
+    /// The force that an input holds, once nothing changes any more. A path that is not a number is taken as the
+    /// longest.
     pub fn force(&self, input: Input<S>) -> Steady<S> {
         let (input, status) = self.domain.admit(input, self.domain.path_length.most);
         self.settled(input, status)
@@ -116,7 +141,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
 
     /// The activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency: within
     /// 0.1 % of F0 where one does. Where none does, the status says so, and activation and force are the
-    /// nearest that there are.
+    /// nearest that there are; not-a-number is nearest to nothing, and a path that is none is taken as the longest.
     pub fn activation_for(
         &self,
         force: S::Force,
@@ -126,31 +151,47 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let input = Input { activation: S::ONE, path_length, stimulation_frequency };
         let (input, status) = self.domain.admit(input, self.domain.path_length.most);
         let wanted = S::of_force(force, &self.per_force);
+        let found = self.balanced(wanted, &input, status);
+        match found {
+            Some(found) if !self.ambiguous => found,
+            Some(found) => {
+                let held = self.settled(Input { activation: found.activation, ..input }, status);
+                let error = (S::of_force(held.force, &self.per_force) - wanted).abs();
+                held.unreachable(error > self.promised)
+            }
+            None => {
+                let none = self.settled(Input { activation: S::ZERO, ..input }, status);
+                let all = self.settled(input, status);
+                let [least, most] = [none, all].map(|end| S::of_force(end.force, &self.per_force));
+                let (end, reached) =
+                    if wanted - least > most - wanted { (all, most) } else { (none, least) };
+                let near = (wanted - reached).abs() <= self.rounding;
+                end.unreachable(!near)
+            }
+        }
+    }
+
+    /// The activation with which a force is in balance, if there is one.
+    fn balanced(&self, wanted: S, input: &Input<S>, status: Status) -> Option<Steady<S>> {
         let extension = self.tendon_inverse.extension(wanted);
-        let lengths = &self.domain.fascicle_length;
         let length = self.tendon.fascicle_length(input.path_length, extension);
-        let balance = self.balance(&input, extension);
+        let balance = self.balance(input, extension);
         let missing = wanted - balance.passive;
         // A force that is not above 0 has no length, and nor has one that would need no fascicles.
-        let possible = wanted > S::ZERO && lengths.contains(length) && missing >= S::ZERO;
-        if possible && missing <= balance.active {
+        let possible = wanted > S::ZERO && self.domain.fascicle_length.contains(length);
+        if possible && missing >= S::ZERO && missing <= balance.active {
             let activation = missing.ratio(balance.active.max(S::LEAST)).min(S::ONE);
-            return self.steady(activation, balance, status);
+            Some(self.steady(activation, balance, status))
+        } else {
+            None
         }
-        let none = self.settled(Input { activation: S::ZERO, ..input }, status);
-        let all = self.settled(input, status);
-        let flagged = |steady: Steady<S>| Steady {
-            status: steady.status | Status::FORCE_UNREACHABLE,
-            ..steady
-        };
-        // Not-a-number, too, is nearest to nothing.
-        if wanted > S::of_force(all.force, &self.per_force) { flagged(all) } else { flagged(none) }
     }
 
     fn steady(&self, activation: S, balance: Balance<S>, status: Status) -> Steady<S> {
         let outside = !self.domain.filaments.contains(balance.fascicle_length);
         let mut status = status;
         status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside);
+        status.set(Status::TENDON_FORCE_LIMITED, balance.saturated);
         Steady {
             activation,
             force: balance.tendon.force(&self.force),
@@ -159,23 +200,27 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         }
     }
 
-    /// Where an admitted input settles: the tendon pulls more, and the fascicles less, the further it is
-    /// extended.
+    /// Where an admitted input settles: the tendon pulls more the further it is extended, and but for the
+    /// longest tendons the fascicles less, or not so much more.
     fn settled(&self, input: Input<S>, status: Status) -> Steady<S> {
         let lengths = &self.domain.fascicle_length;
         let mut least = self.tendon.extension(input.path_length, lengths.most);
         let mut most = self.tendon.extension(input.path_length, lengths.least);
+        // Whether either end was ever left.
+        let (mut longer, mut shorter) = (false, false);
         for _ in 0..HALVINGS {
             let extension = (least + most) * S::HALF;
             let balance = self.balance(&input, extension);
             if balance.tendon > input.activation * balance.active + balance.passive {
-                most = extension;
+                (most, longer) = (extension, true);
             } else {
-                least = extension;
+                (least, shorter) = (extension, true);
             }
         }
         let balance = self.balance(&input, (least + most) * S::HALF);
-        self.steady(input.activation, balance, status)
+        let mut steady = self.steady(input.activation, balance, status);
+        steady.status.set(Status::FASCICLE_LENGTH_LIMITED, !(longer && shorter));
+        steady
     }
 
     /// The forces with the tendon at an extension.
@@ -197,10 +242,12 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             compressed = compressed + share;
         }
         let passive = self.parallel.at(length).0 + compressed * self.compression.at(length).0;
+        let pull = self.tendon.pull(extension);
         Balance {
             active,
             passive: passive.max(S::ZERO),
-            tendon: self.tendon.pull(extension).force,
+            tendon: pull.force,
+            saturated: pull.saturated,
             fascicle_length,
         }
     }

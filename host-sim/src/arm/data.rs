@@ -38,7 +38,7 @@ pub struct ArmMuscle {
 pub struct Arm {
     /// Segments.
     pub skeleton: Skeleton,
-    /// The joints move between these, rad.
+    /// The joints are made for what is between these, rad; nothing stops them beyond.
     pub least_angles: Joints,
     /// See `least_angles`.
     pub greatest_angles: Joints,
@@ -55,6 +55,7 @@ struct File {
     least_angles_deg: Joints,
     greatest_angles_deg: Joints,
     units: usize,
+    upper_arm_length_cm: f64,
     fiber: Vec<FiberTable>,
     upper_arm: SegmentTable,
     forearm: SegmentTable,
@@ -72,7 +73,6 @@ struct FiberTable {
 #[serde(deny_unknown_fields)]
 struct SegmentTable {
     mass_kg: f64,
-    length_cm: f64,
     centre_cm: f64,
     inertia_kg_m2: f64,
 }
@@ -96,12 +96,7 @@ fn metres(centimetres: Joints) -> Joints {
 
 impl From<&SegmentTable> for Segment {
     fn from(table: &SegmentTable) -> Self {
-        Self {
-            mass: table.mass_kg,
-            length: table.length_cm * 1e-2,
-            centre: table.centre_cm * 1e-2,
-            inertia: table.inertia_kg_m2,
-        }
+        Self { mass: table.mass_kg, centre: table.centre_cm * 1e-2, inertia: table.inertia_kg_m2 }
     }
 }
 
@@ -116,6 +111,7 @@ impl Arm {
             skeleton: Skeleton {
                 upper_arm: (&file.upper_arm).into(),
                 forearm: (&file.forearm).into(),
+                upper_arm_length: file.upper_arm_length_cm * 1e-2,
             },
             least_angles: file.least_angles_deg.map(f64::to_radians),
             greatest_angles: file.greatest_angles_deg.map(f64::to_radians),

@@ -71,6 +71,18 @@ pub struct Moment {
 /// Why the arm could not go on.
 #[derive(Debug, thiserror::Error)]
 pub enum ArmError {
+    /// A muscle has no rest where the arm is to start.
+    #[error("start = {shoulder:.3}, {elbow:.3} degrees: {name}: {source} (m)")]
+    Start {
+        /// Degrees.
+        shoulder: f64,
+        /// Degrees.
+        elbow: f64,
+        /// Which muscle.
+        name: String,
+        /// Why.
+        source: RunError,
+    },
     /// A muscle stopped.
     #[error("{name}: {source}")]
     Muscle {
@@ -111,7 +123,7 @@ impl Drive {
         within("elbow activation", self.activations.elbow, 0.0, 1.0, "")?;
         within("biarticular activation", self.activations.biarticular, 0.0, 1.0, "")?;
         within("stimulation frequency", self.stimulation_frequency, 0.0, 500.0, " pps")?;
-        within("time step", self.time_step, 1e-4, 2e-3, " s")?;
+        within("tick", self.time_step * 1e3, 0.1, 2.0, " ms")?;
         within("duration", self.duration, self.time_step, 600.0, " s")
     }
 }
@@ -147,7 +159,10 @@ impl<'a> Simulation<'a> {
             .zip(&paths)
             .map(|(ArmMuscle { name, muscle, .. }, &path)| {
                 engine::at_rest(muscle, drive.mode, drive.arithmetic, drive.time_step, path)
-                    .map_err(|source| ArmError::Muscle { name: name.clone(), source })
+                    .map_err(|source| {
+                        let [shoulder, elbow] = drive.start.map(f64::to_degrees);
+                        ArmError::Start { shoulder, elbow, name: name.clone(), source }
+                    })
             })
             .collect::<Result<_, _>>()?;
         let forces: Vec<f64> = running.iter().map(|running| running.row().0.force).collect();

@@ -3,7 +3,7 @@
 //! `M(q) q'' + C(q, q') = torque`, with the inertia of each segment about the joint above it:
 //!
 //! ```text
-//! M = | J1 + J2 + m2 l1² + 2 k cos q2    J2 + k cos q2 |      k = m2 l1 c2
+//! M = | J1 + J2 + m2 l1² + 2 k cos q2    J2 + k cos q2 |      k = m2 l1 c2, l1 the upper arm's length
 //!     | J2 + k cos q2                    J2            |
 //! C = k sin q2 | -(2 q1' + q2') q2' |
 //!              |  q1'²              |
@@ -17,8 +17,6 @@ pub type Joints = [f64; 2];
 pub struct Segment {
     /// kg.
     pub mass: f64,
-    /// From joint to joint, m.
-    pub length: f64,
     /// Of mass, from the joint above, m.
     pub centre: f64,
     /// About the joint above, kg m².
@@ -32,19 +30,21 @@ pub struct Skeleton {
     pub upper_arm: Segment,
     /// From the elbow, with the hand.
     pub forearm: Segment,
+    /// From shoulder to elbow, m.
+    pub upper_arm_length: f64,
 }
 
 impl Skeleton {
     /// What couples the segments: m2 l1 c2, kg m².
     fn coupling(&self) -> f64 {
-        self.forearm.mass * self.upper_arm.length * self.forearm.centre
+        self.forearm.mass * self.upper_arm_length * self.forearm.centre
     }
 
     /// The symmetric inertia matrix M as (M11, M12, M22), kg m².
     fn inertia(&self, angles: Joints) -> (f64, f64, f64) {
         let coupled = self.coupling() * angles[1].cos();
         let elbow = self.forearm.inertia;
-        let carried = self.forearm.mass * self.upper_arm.length.powi(2);
+        let carried = self.forearm.mass * self.upper_arm_length.powi(2);
         (self.upper_arm.inertia + elbow + carried + 2.0 * coupled, elbow + coupled, elbow)
     }
 
@@ -101,7 +101,7 @@ mod tests {
         let turning = shoulder + elbow;
         // In the frame of the upper arm, the forearm's centre moves with the elbow and about it.
         let along = -fore.centre * turning * angles[1].sin();
-        let across = upper.length * shoulder + fore.centre * turning * angles[1].cos();
+        let across = skeleton.upper_arm_length * shoulder + fore.centre * turning * angles[1].cos();
         let expected = 0.5
             * (upper.inertia * shoulder.powi(2)
                 + fore.mass * (along.powi(2) + across.powi(2))

@@ -1,10 +1,10 @@
 //! `vm arm`.
 
 use super::{ModeName, print};
-use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
+use crate::arm::{self, Activations, Arm, Drive, Joints, Moment, Outcome, Swings};
 use crate::engine::{Arithmetic, status_names};
 use crate::figures;
-use crate::trace::write_atomically;
+use crate::trace::{check_folder, write_atomically};
 use clap::Args;
 use comfy_table::{Table, presets};
 use std::error::Error;
@@ -62,31 +62,45 @@ pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
         time_step: args.tick * 1e-3,
         duration: args.duration,
     };
+    if let Some(path) = &args.output {
+        check_folder(path)?;
+    }
     let moments = arm::run(&arm, &drive)?;
     if let Some(path) = &args.output {
         write_atomically(path, &table(&arm, &moments)?)?;
     }
-    let outcome = Outcome::of(&moments, drive.time_step);
+    let outcome = Outcome::of(&arm, &moments, drive.time_step);
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
     table.set_header([
         "joint",
         "final angle, deg",
-        "largest late swing, deg",
-        "fastest growth, 1/s",
+        "early swing, deg",
+        "late swing, deg",
+        "growth, 1/s",
     ]);
     for (index, joint) in ["shoulder", "elbow"].into_iter().enumerate() {
+        let judged = |value: fn(&Swings) -> Joints| {
+            let value = outcome.swings.as_ref().map(|swings| value(swings)[index]);
+            value.map_or("-".to_owned(), |value| format!("{value:+.3}"))
+        };
         table.add_row([
             joint.to_owned(),
             format!("{:.3}", outcome.final_angles[index]),
-            format!("{:.4}", outcome.late_swing[index]),
-            format!("{:+.2}", outcome.growth[index]),
+            judged(|swings| swings.early),
+            judged(|swings| swings.late),
+            judged(Swings::growth),
         ]);
     }
     print(&table)?;
     print(&format!(
-        "{}; energy error {:.1e} of the turnover; status {}",
-        if outcome.settles() { "settles" } else { "does not settle" },
+        "{}{}; energy error {:.1e} of the turnover; status {}",
+        match outcome.swings.map(|swings| swings.settle()) {
+            Some(true) => "settles",
+            Some(false) => "does not settle",
+            None => "too short a run to be judged: 3 s",
+        },
+        if outcome.out_of_range { "; a joint was beyond its range" } else { "" },
         outcome.energy_error,
         status_names(outcome.status),
     ))?;

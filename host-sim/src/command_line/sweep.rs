@@ -48,22 +48,27 @@ impl SweepArgs {
         }
         let variations: Vec<Variation> =
             self.vary.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
+        let twice = |index: &usize| self.arithmetics[..*index].contains(&self.arithmetics[*index]);
+        if let Some(twice) = (1..self.arithmetics.len()).find(twice) {
+            let name = self.arithmetics[twice].name();
+            return Err(format!("--arithmetics {name}: given twice").into());
+        }
         let modes = self.modes.iter().map(|&mode| mode.into()).collect();
         let random = self.random.map(|count| (count, self.seed));
         Ok(Sweep {
             space: Space::new(&variations, modes, random)?,
             arithmetics: self.arithmetics.clone(),
-            arguments: self.arguments(),
+            arguments: self.arguments(&variations),
         })
     }
 
     /// What makes this sweep this one, as arguments.
-    fn arguments(&self) -> String {
+    fn arguments(&self, variations: &[Variation]) -> String {
         let mut arguments = Vec::new();
         if let Some(count) = self.random {
             arguments.push(format!("--random {count} --seed {}", self.seed));
         }
-        arguments.extend(self.vary.iter().map(|vary| format!("--vary {vary}")));
+        arguments.extend(variations.iter().map(|variation| format!("--vary {variation}")));
         arguments.push(format!("--modes {}", names(&self.modes)));
         arguments.push(format!("--arithmetics {}", names(&self.arithmetics)));
         arguments.join(" ")
@@ -129,10 +134,13 @@ fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Err
         }
         Err(problem) => print(&problem)?,
     }
-    print(&format!(
-        "cargo vm run --muscle {} --input {} --output out.csv --mode {mode} --arithmetic f32",
-        muscle.display(),
-        input.display()
-    ))?;
+    for arithmetic in sweep.arithmetics.iter().chain([&Arithmetic::Reference]) {
+        print(&format!(
+            "cargo vm run --muscle '{}' --input '{}' --output {name}.csv --mode {mode} --arithmetic {name}",
+            muscle.display(),
+            input.display(),
+            name = arithmetic.name(),
+        ))?;
+    }
     Ok(())
 }

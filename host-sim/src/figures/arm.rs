@@ -88,5 +88,5 @@ pub(super) fn make(
         panels: vec![panel("shoulder angle (degrees)", 0), panel("elbow angle (degrees)", 1)],
     };
     folder.figure("arm.svg", &chart)?;
-    Ok([continuous, discrete, effective].map(|run| Outcome::of(run, TIME_STEP)))
+    Ok([continuous, discrete, effective].map(|run| Outcome::of(&arm, run, TIME_STEP)))
 }

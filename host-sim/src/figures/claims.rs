@@ -67,25 +67,30 @@ pub(super) fn judge(
     let last = times.last();
     let units_time = last.map_or(f64::NAN, |row| row.discrete);
     let length_time = last.map_or(f64::NAN, |row| row.effective_length / row.discrete);
+    let settles = |outcome: &Outcome| outcome.swings.is_some_and(|swings| swings.settle());
     let swings = |outcome: &Outcome| {
-        let [shoulder, elbow] = outcome.growth;
-        let [_, late] = outcome.late_swing;
-        format!("fastest growth {shoulder:+.2}/s, {elbow:+.2}/s; elbow swings by {late:.2} degrees")
+        outcome.swings.map_or("not judged".to_owned(), |swings| {
+            let [shoulder, elbow] = swings.growth();
+            let [early, late] = [swings.early[1], swings.late[1]];
+            format!(
+                "growth {shoulder:+.2}/s and {elbow:+.2}/s; elbow swings by {early:.2}, then {late:.2} degrees"
+            )
+        })
     };
     vec![
         Claim {
             claim: "with effective length the arm goes unstable",
             claimed: "oscillations of the joints",
             measured: swings(effective_length),
-            agrees: !effective_length.settles(),
-            why: "",
+            agrees: !settles(effective_length),
+            why: "with other activations and starts it may settle; arm.csv has the angles",
         },
         Claim {
             claim: "without effective length the arm settles",
             claimed: "no oscillations",
             measured: format!("discrete: {}; continuous: {}", swings(discrete), swings(continuous)),
-            agrees: discrete.settles() && continuous.settles(),
-            why: "",
+            agrees: settles(discrete) && settles(continuous),
+            why: "arm.csv has the angles",
         },
         Claim {
             claim: "the first of 3 + 3 units is recruited with a step of force",

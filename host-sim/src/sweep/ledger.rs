@@ -47,8 +47,14 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is dropped.
-    pub fn open(path: &Path, head: &[String; 2], count: usize) -> Result<Self, LedgerError> {
+    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is dropped; every
+    /// other one must begin as `begin` says that its case's does.
+    pub fn open(
+        path: &Path,
+        head: &[String; 2],
+        count: usize,
+        begin: &dyn Fn(usize) -> Vec<String>,
+    ) -> Result<Self, LedgerError> {
         let failed = |source| LedgerError::File { path: path.to_owned(), source };
         let mut file = OpenOptions::new()
             .read(true)
@@ -83,7 +89,7 @@ impl Ledger {
                 }
             }
         }
-        let rows = rows(path, &text, head, count)?;
+        let rows = rows(path, &text, head, count, begin)?;
         file.set_len(whole as u64).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Self::new(path, file, head, count, rows))
@@ -149,6 +155,7 @@ fn rows(
     text: &str,
     head: &[String; 2],
     count: usize,
+    begin: &dyn Fn(usize) -> Vec<String>,
 ) -> Result<BTreeMap<usize, Vec<String>>, LedgerError> {
     let body = &text[head[0].len() + head[1].len() + 2..];
     let columns = head[1].split(',').count();
@@ -174,6 +181,16 @@ fn rows(
             let problem = format!("\"{}\": must be a whole number below {count}", row[0]);
             return Err(refused(line, "case", problem));
         };
+        let expected = begin(case);
+        for ((cell, expected), column) in row.iter().zip(&expected).zip(head[1].split(',')) {
+            if cell != expected {
+                let problem = format!("\"{cell}\": case {case} has {expected}");
+                return Err(refused(line, column, problem));
+            }
+        }
+        if row[expected.len()..].iter().all(String::is_empty) {
+            return Err(refused(line, "(any)", format!("case {case} has no result")));
+        }
         if rows.insert(case, row).is_some() {
             return Err(refused(line, "case", format!("{case} is there twice")));
         }

@@ -1,9 +1,11 @@
 //! What a sweep goes through: a grid of values, or a sample at random.
 
 use super::case::Case;
+use crate::engine::mode_name;
 use crate::reference::Mode;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::fmt;
 use std::str::FromStr;
 
 /// Something that varies.
@@ -94,9 +96,9 @@ pub enum SpaceError {
         /// Where it ends.
         to: f64,
     },
-    /// A key given twice.
+    /// A key, or a mode, given twice.
     #[error("{0}: given twice")]
-    Twice(&'static str),
+    Twice(String),
     /// A grid needs values.
     #[error(
         "{0}: a grid needs values, not a range: key=value,value,... (or a sample, with --random)"
@@ -111,8 +113,8 @@ fn names() -> String {
     KEYS.map(|key| key.name).join(", ")
 }
 
-/// More would not fit in one table.
-pub const MOST_CASES: usize = 100_000_000;
+/// The rows of more, of a kilobyte each, would not fit in the memory of a small machine.
+pub const MOST_CASES: usize = 1_000_000;
 
 impl FromStr for Variation {
     type Err = SpaceError;
@@ -141,6 +143,20 @@ impl FromStr for Variation {
     }
 }
 
+impl fmt::Display for Variation {
+    /// As it is given on the command line, numbers as they are.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = KEYS[self.key].name;
+        match &self.values {
+            Values::Range(from, to) => write!(f, "{name}={from}:{to}"),
+            Values::Listed(listed) => {
+                let listed: Vec<String> = listed.iter().map(f64::to_string).collect();
+                write!(f, "{name}={}", listed.join(","))
+            }
+        }
+    }
+}
+
 /// All cases of a sweep, by number.
 #[derive(Clone, Debug)]
 pub struct Space {
@@ -159,6 +175,10 @@ impl Space {
         modes: Vec<Mode>,
         random: Option<(usize, u64)>,
     ) -> Result<Self, SpaceError> {
+        if let Some(twice) = (1..modes.len()).find(|&index| modes[..index].contains(&modes[index]))
+        {
+            return Err(SpaceError::Twice(format!("--modes {}", mode_name(modes[twice]))));
+        }
         let mut values = KEYS.map(|key| match random {
             Some(_) => Values::Range(key.range.0, key.range.1),
             None => Values::Listed(vec![key.nominal]),
@@ -167,7 +187,7 @@ impl Space {
         for Variation { key, values: of_key } in variations {
             let name = KEYS[*key].name;
             if std::mem::replace(&mut given[*key], true) {
-                return Err(SpaceError::Twice(name));
+                return Err(SpaceError::Twice(name.to_owned()));
             }
             if random.is_none() && matches!(of_key, Values::Range(..)) {
                 return Err(SpaceError::RangeInGrid(name));
