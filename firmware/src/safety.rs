@@ -65,48 +65,47 @@ impl Limits {
 
 /// What went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
 pub enum Fault {
     /// Nothing yet: this is how everything starts.
-    Boot = 1,
+    Boot,
     /// An amplitude beyond its limit was asked for.
-    Amplitude = 2,
+    Amplitude,
     /// A width.
-    Width = 3,
+    Width,
     /// A frequency.
-    Frequency = 4,
+    Frequency,
     /// A charge per phase.
-    Charge = 5,
+    Charge,
     /// A mean square of current.
-    RootMeanSquare = 6,
+    RootMeanSquare,
     /// Stimulation has lasted as long as it may.
-    Session = 7,
+    Session,
     /// The host was silent for too long.
-    Silence = 8,
+    Silence,
     /// An electrode is shorted.
-    ElectrodeShort = 9,
+    ElectrodeShort,
     /// An electrode has come off.
-    ElectrodeOpen = 10,
+    ElectrodeOpen,
     /// The supply is out of its range.
-    Supply = 11,
+    Supply,
     /// The sensor gives no number.
-    SensorMissing = 12,
+    SensorMissing,
     /// The sensor's number is out of its range.
-    SensorRange = 13,
+    SensorRange,
     /// It jumped.
-    SensorJump = 14,
+    SensorJump,
     /// It is stuck.
-    SensorStuck = 15,
+    SensorStuck,
     /// The tick before was late or did not finish.
-    Deadline = 16,
+    Deadline,
     /// The watchdog had to restart the controller.
-    Watchdog = 17,
+    Watchdog,
     /// State or parameters are not what the last tick left.
-    Checksum = 18,
+    Checksum,
     /// The output stage did not answer.
-    Output = 19,
+    Output,
     /// A stimulus was asked for that the stimulator cannot do.
-    Request = 20,
+    Request,
 }
 
 /// What a tick sees.

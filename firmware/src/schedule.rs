@@ -23,7 +23,8 @@ const MOST_LOAD: u32 = 900;
 
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    pulse: Pulse,
+    /// None while the channel is off; its rhythm goes on, or off and on again would be a way round frequencies.
+    pulse: Option<Pulse>,
     period_us: u32,
     duration_us: u32,
     /// From now until the next pulse is due, µs; negative once it is.
@@ -51,17 +52,20 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         within("channel", channel as u32, 0, CHANNELS.saturating_sub(1) as u32)?;
         let Some(place) = self.channels.get(channel) else { return Ok(()) };
         let wanted = match stimulus {
-            None => None,
+            None => place.map(|before| Channel { pulse: None, ..before }),
             Some(stimulus) => {
                 let pulse = Pulse::new(&stimulus, &self.scale)?;
                 let (period_us, duration_us) = (stimulus.period_us(), stimulus.duration_us());
                 let others =
                     self.channels.iter().enumerate().filter(|(other, _)| *other != channel);
                 let load = others.filter_map(|(_, one)| *one).map(|one| one.load()).sum::<u32>();
-                let added = Channel { pulse, period_us, duration_us, due_us: 0 };
+                let added = Channel { pulse: Some(pulse), period_us, duration_us, due_us: 0 };
                 within("load: thousandths of the time", load + added.load(), 0, MOST_LOAD)?;
-                // A rhythm goes on; a new one begins at once.
-                let due_us = place.map_or(0, |before| before.due_us.min(period_us as i32));
+                // A rhythm goes on; a new one, or one that has been off for long, begins at once.
+                let due_us = place.map_or(0, |before| {
+                    let due_us = before.due_us.min(period_us as i32);
+                    if before.pulse.is_some() { due_us } else { due_us.max(0) }
+                });
                 Some(Channel { due_us, ..added })
             }
         };
@@ -104,14 +108,14 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
     /// The first phase of the pulse that is due first, or nothing until one is.
     fn start(&mut self) -> Step {
         let of_channel = |(index, channel): (usize, &Option<Channel>)| {
-            channel.map(|channel| (channel.due_us, index))
+            channel.filter(|channel| channel.pulse.is_some()).map(|channel| (channel.due_us, index))
         };
         let first = self.channels.iter().enumerate().filter_map(of_channel).min();
         match first {
             Some((due_us, index)) if due_us <= 0 => {
                 if let Some(channel) = self.channels.get_mut(index).and_then(Option::as_mut) {
                     channel.due_us += channel.period_us as i32;
-                    self.running = Some((index, channel.pulse, 0));
+                    self.running = channel.pulse.map(|pulse| (index, pulse, 0));
                 }
                 self.phase().unwrap_or(Step { output: None, duration_us: 1 })
             }
@@ -124,6 +128,9 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
 impl Channel {
     /// Share of the time that its pulses take, thousandths, rounded up.
     fn load(&self) -> u32 {
+        if self.pulse.is_none() {
+            return 0;
+        }
         (self.duration_us * 1000).div_ceil(self.period_us.max(1))
     }
 }

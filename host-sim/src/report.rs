@@ -8,6 +8,7 @@ use crate::golden::{self, Golden, GoldenError};
 use crate::verify::{self, Row, Traces};
 use askama::Template;
 use std::path::{Path, PathBuf};
+use vm_nostd::{Fixed, NaturalContinuous, Scalar, State};
 
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
@@ -172,6 +173,11 @@ fn facts(
             good: true,
         },
     ];
+    facts.push(Fact {
+        value: format!("{} and {} B", state_bytes::<f32>(), state_bytes::<Fixed>()),
+        what: "of state of a muscle of two types, in f32 and in fixed point",
+        good: true,
+    });
     let named = |name| cycles.iter().find(|row: &&cycles::Row| row.case == name);
     if let Some(row) = named("continuous-f32") {
         facts.push(Fact {
@@ -181,6 +187,11 @@ fn facts(
         });
     }
     facts
+}
+
+/// Bytes of the state of a muscle of two types under natural continuous recruitment.
+fn state_bytes<S: Scalar<Bits = u32>>() -> usize {
+    size_of::<S::Bits>() * State::<S, NaturalContinuous, 2>::WORDS
 }
 
 /// A line per scenario at 1 ms.

@@ -65,8 +65,7 @@ impl Sweep {
     }
 
     /// What a case's row begins with.
-    fn begin(&self, number: usize) -> Vec<String> {
-        let case = self.space.case(number);
+    fn begin(number: usize, case: &Case) -> Vec<String> {
         let mut row = vec![number.to_string(), engine::mode_name(case.mode).to_owned()];
         row.extend(case.values.iter().map(f64::to_string));
         row
@@ -75,7 +74,7 @@ impl Sweep {
     /// Computes what is not in the table yet. When all is, the table is put in order, so that it has the same
     /// bytes however often it was interrupted.
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
-        let begin = |case| self.begin(case);
+        let begin = |number| Self::begin(number, &self.space.case(number));
         let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
         let missing = ledger.missing();
         let progress = ProgressBar::new(self.space.count() as u64);
@@ -102,8 +101,8 @@ impl Sweep {
 
     /// A case as a row of the table.
     fn row(&self, number: usize) -> Vec<String> {
-        let mut row = self.begin(number);
         let case = self.space.case(number);
+        let mut row = Self::begin(number, &case);
         let measured = case
             .errors(&self.arithmetics)
             .unwrap_or_else(|refusal| vec![Err(refusal); self.arithmetics.len()]);

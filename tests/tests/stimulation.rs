@@ -250,6 +250,40 @@ fn what_a_stimulator_cannot_do_is_named() {
     assert_eq!(error, "load: thousandths of the time = 968: must be 0 to 900");
 }
 
+/// A channel that is switched off and on again all the time has no more pulses than its frequency.
+#[test]
+fn off_and_on_again_is_no_way_round_a_frequency() {
+    let stimulus = Stimulus {
+        amplitude_ua: 1000,
+        width_us: 100,
+        gap_us: 0,
+        frequency_tenths_pps: 300,
+        recovery: 1,
+    };
+    let first = Pulse::new(&stimulus, &SCALE).expect("a legal command").phases[0];
+    let mut schedule = Schedule::<CHANNELS>::new(SCALE);
+    let (mut now, mut pulses, mut switches) = (0_u32, 0, 0_u32);
+    while now < 2_000_000 {
+        if now >= switches * 1000 {
+            let wanted = switches.is_multiple_of(2).then_some(stimulus);
+            schedule.set(0, wanted).expect("a legal command");
+            switches += 1;
+        }
+        let step = schedule.advance();
+        pulses += u32::from(step.output == Some((0, first)));
+        now += step.duration_us;
+    }
+    assert!((50..=61).contains(&pulses), "{pulses} pulses in 2 s at 30 pps");
+    // After a long pause it begins once, and does not catch up.
+    schedule.set(0, None).expect("off");
+    (0..10_000).for_each(|_| {
+        schedule.advance();
+    });
+    schedule.set(0, Some(stimulus)).expect("on");
+    let started = (0..100).filter(|_| schedule.advance().output == Some((0, first))).count();
+    assert_eq!(started, 1, "in 25 ms");
+}
+
 #[test]
 fn halting_stops_at_once_and_forgets() {
     let stimulus = Stimulus {

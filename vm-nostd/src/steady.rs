@@ -12,7 +12,7 @@
 //! be several balances, the answer is tried that way.
 
 use crate::activation::ActivationFrequency;
-use crate::domain::{Domain, Range, Status};
+use crate::domain::{Domain, Status};
 use crate::error::ParameterError;
 use crate::force_length::ForceLength;
 use crate::muscle::{FesMuscle, Input};
@@ -151,8 +151,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let input = Input { activation: S::ONE, path_length, stimulation_frequency };
         let (input, status) = self.domain.admit(input, self.domain.path_length.most);
         let wanted = S::of_force(force, &self.per_force);
-        let found = self.balanced(wanted, &input, status);
-        match found {
+        match self.balanced(wanted, &input, status) {
             Some(found) if !self.ambiguous => found,
             Some(found) => {
                 let held = self.settled(Input { activation: found.activation, ..input }, status);
@@ -226,8 +225,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
     /// The forces with the tendon at an extension.
     fn balance(&self, input: &Input<S>, extension: S) -> Balance<S> {
         let fascicle_length = self.tendon.fascicle_length(input.path_length, extension);
-        let range: &Range<S> = &self.domain.fascicle_length;
-        let (length, _) = range.clip(fascicle_length);
+        let (length, _) = self.domain.fascicle_length.clip(fascicle_length);
         let (inside, _) = self.domain.filaments.clip(length);
         let (reciprocal, logarithm) = (inside.reciprocal(), inside.ln());
         let (mut active, mut compressed) = (S::ZERO, S::ZERO);
