@@ -1,6 +1,7 @@
 //! Activation-frequency relation: Af = 1 - exp(-(Y S f/(af n_f))^n_f),
 //! n_f = nf0 + nf1 (1/L - 1).
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::recruitment::Course;
 use crate::scalar::Scalar;
@@ -60,6 +61,8 @@ pub(crate) struct ActivationFrequency<S> {
     scale: S,
     steepest: S,
 }
+
+summed!([S: Scalar] ActivationFrequency<S> { exponent, scale, steepest });
 
 /// Af at one fascicle length, ready for any frequency.
 #[derive(Clone, Copy, Debug)]

@@ -19,6 +19,14 @@ pub enum BankedMuscle<S: Scalar, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
+    /// Checksums of its coefficients and of its state.
+    pub fn checksums(&self) -> [u32; 2] {
+        match self {
+            Self::Continuous(muscle, state) => [muscle.checksum(), state.checksum()],
+            Self::Fes(muscle, state) => [muscle.checksum(), state.checksum()],
+        }
+    }
+
     /// Steps it by one tick, as [`Muscle::step`](crate::Muscle::step) does.
     pub fn step(&mut self, input: Input<S>) -> Output<S> {
         match self {

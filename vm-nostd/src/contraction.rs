@@ -14,6 +14,7 @@
 
 mod decay;
 
+use crate::checksum::summed;
 use crate::domain::MAXIMUM_SPEED;
 use crate::force_velocity::VelocityCurve;
 use crate::params::MuscleParams;
@@ -96,6 +97,8 @@ pub(crate) struct Contraction<S: Scalar> {
     decay: Decay<S>,
 }
 
+summed!([S: Scalar] Contraction<S> { tendon, viscosity, first, other, substeps, tick, tick_rate, speed, settled, decay });
+
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
 struct Substep<S> {
@@ -108,6 +111,8 @@ struct Substep<S> {
     /// How much less that is, per F0 of the tendon's stiffness in half the substep at 1 L_ce0/s.
     fitted: S,
 }
+
+summed!([S: Scalar] Substep<S> { share, half_share, inertia, fitted });
 
 impl<S: Scalar> Substep<S> {
     /// A substep of `seconds`, for a mass in F0 s²/L_ce0 on a taut tendon in F0/L_ce0.

@@ -1,5 +1,6 @@
 //! Where inputs and state must stay, and the flags that say when they had to be kept there.
 
+use crate::checksum::{Summed, summed};
 use crate::muscle::Input;
 use crate::params::MuscleParams;
 use crate::scalar::Scalar;
@@ -53,6 +54,8 @@ pub struct Range<S> {
     pub(crate) most: S,
 }
 
+summed!([S: Summed] Range<S> { least, most });
+
 impl<T: Copy + PartialOrd> Range<T> {
     pub(crate) fn new((least, most): (f64, f64), nearest: impl Fn(f64) -> T) -> Self {
         Self { least: nearest(least), most: nearest(most) }
@@ -95,6 +98,8 @@ pub(crate) struct Domain<S: Scalar> {
     /// L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
 }
+
+summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity });
 
 impl<S: Scalar> Domain<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {

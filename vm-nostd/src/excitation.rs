@@ -3,6 +3,7 @@
 //!
 //! Rising (f_int >= f_eff): Tf = Tf1 L² + Tf2 f_env; falling: Tf = (Tf3 + Tf4 Af)/L.
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::{Lags, Scalar};
 use crate::time_step::TimeStep;
@@ -44,6 +45,8 @@ pub struct Excitation<S: Scalar> {
     fall: S,
     fall_per_activation: S,
 }
+
+summed!([S: Scalar] Excitation<S> { tick, rise, rise_per_frequency, fall, fall_per_activation });
 
 /// What one tick does to the two lags.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Force-length relation of the filaments: FL = exp(-|(L^beta - 1)/omega|^rho).
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 
@@ -33,6 +34,8 @@ pub(crate) struct ForceLength<S: Scalar> {
     /// 1/omega.
     per_width: S::Factor,
 }
+
+summed!([S: Scalar] ForceLength<S> { skewness, roundness, per_width });
 
 impl<S: Scalar> ForceLength<S> {
     pub(crate) fn new(params: &ForceLengthParams) -> Self {

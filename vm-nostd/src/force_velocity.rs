@@ -5,6 +5,7 @@
 //!
 //! Both are (1 + n V)/(1 + d V) = 1 + (n - d) V/(1 + d V), with n and d chosen by the sign of V.
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::recruitment::Course;
 use crate::scalar::Scalar;
@@ -109,6 +110,8 @@ pub(crate) struct ForceVelocity<S> {
     per_lengthening: S,
     lengthening: [S; 3],
 }
+
+summed!([S: Scalar] ForceVelocity<S> { maximum_velocity, per_maximum, shortening, per_lengthening, lengthening });
 
 impl<S: Scalar> ForceVelocity<S> {
     pub(crate) fn new(params: &ForceVelocityParams) -> Self {

@@ -1,5 +1,6 @@
 //! A first-order lag towards a target that is constant during a tick.
 
+use crate::checksum::summed;
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
 use crate::time_step::TimeStep;
@@ -10,6 +11,8 @@ pub(crate) struct Lag<S: Scalar> {
     half: S::Share,
     whole: S::Share,
 }
+
+summed!([S: Scalar] Lag<S> { half, whole });
 
 impl<S: Scalar> Lag<S> {
     /// A lag of `time_constant` s.

@@ -11,6 +11,7 @@
 
 mod activation;
 mod bank;
+mod checksum;
 mod contraction;
 mod domain;
 mod error;
@@ -40,6 +41,7 @@ mod yielding;
 
 pub use activation::ActivationParams;
 pub use bank::{Bank, BankFull, BankedMuscle};
+pub use checksum::Checksum;
 pub use domain::Status;
 pub use error::{Limit, ParameterError};
 pub use excitation::ExcitationParams;

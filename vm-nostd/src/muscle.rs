@@ -1,6 +1,7 @@
 //! A muscle: parameters made into coefficients once, and the tick.
 
 use crate::activation::ActivationFrequency;
+use crate::checksum::{Checksum, Summed, summed};
 use crate::contraction::{Contractile, Contraction, Motion};
 use crate::domain::{Domain, Status};
 use crate::error::{ParameterError, within};
@@ -77,6 +78,8 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     tick_rate: S::Factor,
 }
 
+summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
+
 /// The coefficients of one fibre type.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
@@ -88,6 +91,8 @@ pub struct Fiber<S: Scalar> {
     force_length: ForceLength<S>,
     force_velocity: ForceVelocity<S>,
 }
+
+summed!([S: Scalar] Fiber<S> { excitation, sag, yielding, activation, force_length, force_velocity });
 
 impl<S: Scalar> Fiber<S> {
     fn new(params: &FiberParams, step: TimeStep) -> Self {
@@ -174,6 +179,14 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// Maximal isometric force F0, in N (in fixed point: mN).
     pub fn max_isometric_force(&self) -> S::Force {
         self.max_isometric_force
+    }
+
+    /// Checksum of all coefficients: it stays what it is as long as memory does. Firmware that compares it every
+    /// tick sees a flipped bit before it makes a force.
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.sum(&mut checksum);
+        checksum.value()
     }
 
     /// Shortest and longest path that are taken as they are; others are clipped and flagged.

@@ -1,5 +1,6 @@
 //! The passive elements: F_pe1, in parallel with the fascicles, and F_pe2, the thick filaments.
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::time_step::TimeStep;
@@ -82,6 +83,8 @@ pub(crate) struct Parallel<S: Scalar> {
     stiffness: S::Factor,
 }
 
+summed!([S: Scalar] Parallel<S> { slack_length, per_toe, force, stiffness });
+
 impl<S: Scalar> Parallel<S> {
     pub(crate) fn new(
         params: &ParallelParams,
@@ -117,6 +120,8 @@ pub(crate) struct Compression<S: Scalar> {
     /// -k2 times the time step, per L_ce0/s and tick.
     slope: S::Factor,
 }
+
+summed!([S: Scalar] Compression<S> { strength, steepness, unit_length, slope });
 
 /// A strength (F0) that counts as none: its logarithm is still a number.
 const NO_STRENGTH: f64 = 1e-9;

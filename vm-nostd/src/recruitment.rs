@@ -15,6 +15,7 @@ pub use fes::IntramuscularFes;
 pub use motor_units::{MotorUnits, UnitSizes};
 
 use crate::activation::ActivationCurve;
+use crate::checksum::Summed;
 use crate::domain::Range;
 use crate::error::ParameterError;
 use crate::muscle::{Fiber, Input};
@@ -33,7 +34,7 @@ pub trait Recruitment<S: Scalar, const N: usize>:
     #[doc(hidden)]
     type State: RecruitmentState<S>;
     #[doc(hidden)]
-    type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State>;
+    type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State> + Summed;
 }
 
 /// What of a mode changes from tick to tick.

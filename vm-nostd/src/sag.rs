@@ -1,5 +1,6 @@
 //! Sag of fast fibres: dS/dt = (aS - S)/TS, aS = aS1 below f = 0.1 f0.5, else aS2.
 
+use crate::checksum::summed;
 use crate::domain::Range;
 use crate::error::{ParameterError, within};
 use crate::lag::Lag;
@@ -38,6 +39,8 @@ pub(crate) struct Sag<S: Scalar> {
     firing_level: S,
     lag: Lag<S>,
 }
+
+summed!([S: Scalar] Sag<S> { resting_level, firing_level, lag });
 
 impl<S: Scalar> Sag<S> {
     pub(crate) fn new(params: Option<&SagParams>, step: TimeStep) -> Self {

@@ -4,6 +4,7 @@ pub(crate) mod fixed;
 pub(crate) mod float;
 mod series;
 
+use crate::checksum::Summed;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -23,6 +24,7 @@ pub(crate) mod sealed {
 /// of any magnitude, [`Slow`](Scalar::Slow) for what a lag moves, [`ratio`](Scalar::ratio).
 pub trait Scalar:
     sealed::Sealed
+    + Summed
     + Copy
     + Debug
     + PartialEq
@@ -36,18 +38,18 @@ pub trait Scalar:
     /// A word of a saved state.
     type Bits: Copy + Debug + Eq + Into<u64>;
     /// A constant to multiply with, of any magnitude.
-    type Factor: Copy + Debug;
+    type Factor: Copy + Debug + Summed;
     /// A value that a lag moves, by less in a tick than the number itself may resolve.
     type Slow: Copy + Debug + PartialEq;
     /// A share, 0..1, of the way that a lag has still to go.
-    type Share: Copy + Debug;
+    type Share: Copy + Debug + Summed;
     /// A musculotendon path length: m in floating point, µm in fixed point.
-    type PathLength: Copy + Debug + PartialEq + PartialOrd;
+    type PathLength: Copy + Debug + PartialEq + PartialOrd + Summed;
     /// What firmware sets or measures, in a unit of its own: a stimulation frequency in pps, a pulse's
     /// amplitude in mA, its width in µs.
-    type Quantity: Copy + Debug + PartialEq + PartialOrd;
+    type Quantity: Copy + Debug + PartialEq + PartialOrd + Summed;
     /// A tendon force: N in floating point, mN in fixed point.
-    type Force: Copy + Debug + PartialEq + PartialOrd;
+    type Force: Copy + Debug + PartialEq + PartialOrd + Summed;
 
     /// 0.
     const ZERO: Self;

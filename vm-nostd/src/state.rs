@@ -1,5 +1,6 @@
 //! Everything of a muscle that changes from tick to tick.
 
+use crate::checksum::Checksum;
 use crate::domain::Range;
 use crate::recruitment::{NaturalContinuous, Recruitment, RecruitmentState};
 use crate::scalar::Scalar;
@@ -58,6 +59,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
     pub fn fascicle_velocity(&self) -> S {
         self.fascicle_velocity
+    }
+
+    /// Checksum of all of its words.
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.words().for_each(|word| checksum.add_long(word.into()));
+        checksum.value()
     }
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon

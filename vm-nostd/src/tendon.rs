@@ -1,5 +1,6 @@
 //! Tendon and aponeurosis: F_se = cT kT ln(exp((L_se - LrT)/kT) + 1).
 
+use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
@@ -49,6 +50,8 @@ pub(crate) struct Tendon<S: Scalar> {
     /// cT L_ce0/L_se0 times the time step, F0 per L_ce0/s and tick.
     stiffness: S::Factor,
 }
+
+summed!([S: Scalar] Tendon<S> { slack_path, per_path, per_toe, force, stiffness });
 
 /// What a tendon does at an extension.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
+use crate::checksum::summed;
 use crate::domain::Range;
 use crate::error::{ParameterError, within};
 use crate::lag::Lag;
@@ -37,6 +38,8 @@ pub(crate) struct Yielding<S: Scalar> {
     per_velocity: S::Factor,
     lag: Lag<S>,
 }
+
+summed!([S: Scalar] Yielding<S> { depth, per_velocity, lag });
 
 impl<S: Scalar> Yielding<S> {
     pub(crate) fn new(params: Option<&YieldParams>, step: TimeStep) -> Self {

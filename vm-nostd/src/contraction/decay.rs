@@ -8,6 +8,7 @@
 //! either end and to 0.03 in between; and what the difference adds to the mean velocity by
 //! s⁴ (1 - s)/2, to 0.07: it matters where damping is large.
 
+use crate::checksum::summed;
 use crate::scalar::Scalar;
 
 /// The coefficients of the fit.
@@ -17,6 +18,8 @@ pub(super) struct Decay<S> {
     five_thirds: S,
     four_thirds: S,
 }
+
+summed!([S: Scalar] Decay<S> { two_thirds, five_thirds, four_thirds });
 
 /// Velocities (L_ce0/s) at a substep's end, and in its mean, relative to that at its middle.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@
 //! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
 use super::{Course, Moment};
+use crate::checksum::{Summed, summed};
 use crate::domain::Range;
 use crate::params::FiberType;
 use crate::scalar::Scalar;
@@ -24,7 +25,7 @@ pub struct EffectiveLength;
 pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
     /// What of it changes from tick to tick.
     type State: Copy + Debug + PartialEq;
-    type Coefficients: Copy + Debug;
+    type Coefficients: Copy + Debug + Summed;
     const WORDS: usize;
 
     /// Of a type, in a muscle whose equations hold from one fascicle length (L_ce0) to another.
@@ -79,6 +80,8 @@ pub struct EffectiveLengthCoefficients<S: Scalar> {
     /// Where L_eff is kept: where n_f is defined.
     range: Range<S>,
 }
+
+summed!([S: Scalar] EffectiveLengthCoefficients<S> { rate, least_inactive, range });
 
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
     type State = S::Slow;

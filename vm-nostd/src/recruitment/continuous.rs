@@ -10,6 +10,7 @@
 use super::firing::Firing;
 use super::lumped::LumpedState;
 use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use crate::checksum::summed;
 use crate::domain::Range;
 use crate::error::ParameterError;
 use crate::lag::Lag;
@@ -45,6 +46,8 @@ pub struct Coefficients<S: Scalar, const N: usize> {
     firing: S,
     units: [Firing<S>; N],
 }
+
+summed!([S: Scalar, const N: usize] Coefficients<S, N> { rise, fall, firing, units });
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = false;

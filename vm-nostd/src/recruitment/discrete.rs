@@ -8,6 +8,7 @@ use super::acting_length::ActingLength;
 use super::firing::Firing;
 use super::motor_units::MotorUnits;
 use super::{Course, Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick, activated};
+use crate::checksum::{Summed, summed};
 use crate::domain::Range;
 use crate::error::ParameterError;
 use crate::muscle::Fiber;
@@ -42,6 +43,8 @@ pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
     count: usize,
 }
 
+summed!([S: Scalar, A: ActingLength<S>, const UNITS: usize] Coefficients<S, A, UNITS> { firing, units, count });
+
 #[derive(Clone, Copy, Debug)]
 struct Unit<S: Scalar, L> {
     /// Index of its fibre type.
@@ -51,6 +54,8 @@ struct Unit<S: Scalar, L> {
     firing: Firing<S>,
     acting_length: L,
 }
+
+summed!([S: Scalar, L: Summed] Unit<S, L> { fiber, share, firing, acting_length });
 
 /// What each motor unit has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@
 
 use super::lumped::LumpedState;
 use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use crate::checksum::summed;
 use crate::domain::Range;
 use crate::error::ParameterError;
 use crate::muscle::Fiber;
@@ -34,12 +35,16 @@ pub struct Coefficients<S: Scalar, const N: usize> {
     units: [Unit<S>; N],
 }
 
+summed!([S: Scalar, const N: usize] Coefficients<S, N> { firing, units });
+
 #[derive(Clone, Copy, Debug)]
 struct Unit<S: Scalar> {
     fraction: S,
     /// 1/f0.5, s.
     per_half_force_frequency: S::Factor,
 }
+
+summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = true;

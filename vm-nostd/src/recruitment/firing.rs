@@ -1,6 +1,7 @@
 //! Firing of what is recruited naturally: f_env rises linearly with raw activation, from fmin at the
 //! threshold Uth to fmax at U = 1; below Uth it is 0.
 
+use crate::checksum::summed;
 use crate::params::FiberType;
 use crate::scalar::Scalar;
 
@@ -14,6 +15,8 @@ pub(super) struct Firing<S: Scalar> {
     /// (fmax - fmin)/(1 - Uth).
     slope: S::Factor,
 }
+
+summed!([S: Scalar] Firing<S> { threshold, minimum_frequency, maximum_frequency, slope });
 
 /// 1 - Uth is not taken as less: what is recruited at U = 1 only fires as all do then.
 const LEAST_RANGE: f64 = 1e-6;

@@ -16,6 +16,7 @@ pub(crate) use number::saturations;
 
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
+use crate::checksum::{Checksum, Summed};
 use factor::nearest;
 use fixed::types::{I16F16, I23F9};
 use number::ONE;
@@ -28,6 +29,20 @@ const QUANTITY_UNITS: f64 = (1 << 16) as f64;
 const SLOW_SHIFT: u32 = 32;
 
 impl Sealed for Fixed {}
+
+/// Implements [`Summed`] for numbers of 32 bits.
+macro_rules! summed_bits {
+    ($($number:ty),*) => {
+        $(impl Summed for $number {
+            #[inline]
+            fn sum(&self, checksum: &mut Checksum) {
+                self.to_bits().sum(checksum);
+            }
+        })*
+    };
+}
+
+summed_bits!(Fixed, I16F16, I23F9);
 
 impl Scalar for Fixed {
     type Bits = u32;

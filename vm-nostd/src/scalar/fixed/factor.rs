@@ -1,6 +1,7 @@
 //! Constants of any magnitude.
 
 use super::number::{exact, whole};
+use crate::checksum::summed;
 
 /// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +10,8 @@ pub struct Factor {
     /// 1 to 62.
     shift: u8,
 }
+
+summed!([] Factor { mantissa, shift });
 
 impl Factor {
     /// The nearest factor; its mantissa has 31 bits, unless it is below 2^-32.

@@ -1,0 +1,218 @@
+//! A checksum over constants and state, so that firmware sees a bit that memory has lost before it becomes a
+//! force.
+//!
+//! Words are taken in one by one, h <- (rotate(h, 5) xor word) k with k odd: for a given h every other word
+//! gives another h, and for a given word every other h. One word that differs is therefore always seen, and
+//! several are missed with a chance of about 2^-32.
+
+/// A sum over words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checksum(u32);
+
+/// Odd, and its bits look random: 2^32 over the golden ratio.
+const FACTOR: u32 = 0x9E37_79B1;
+
+impl Checksum {
+    /// Of no words.
+    pub const EMPTY: Self = Self(0);
+
+    /// Takes in a word.
+    #[inline]
+    pub fn add(&mut self, word: u32) {
+        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(FACTOR);
+    }
+
+    /// Takes in a word of a saved state.
+    #[inline]
+    pub(crate) fn add_long(&mut self, word: u64) {
+        // Its two halves; words of 32 bits have none in the upper one.
+        self.add(word as u32);
+        self.add((word >> 32) as u32);
+    }
+
+    /// The sum so far.
+    pub fn value(self) -> u32 {
+        self.0
+    }
+}
+
+/// Constants whose every bit can be summed.
+#[doc(hidden)]
+pub trait Summed {
+    /// Adds all of its bits.
+    fn sum(&self, checksum: &mut Checksum);
+}
+
+impl Summed for () {
+    fn sum(&self, _: &mut Checksum) {}
+}
+
+impl<T: Summed, const N: usize> Summed for [T; N] {
+    fn sum(&self, checksum: &mut Checksum) {
+        self.iter().for_each(|one| one.sum(checksum));
+    }
+}
+
+/// Implements [`Summed`] for numbers.
+macro_rules! summed_numbers {
+    ($($number:ty: |$value:ident| $bits:expr;)*) => {
+        $(impl Summed for $number {
+            #[inline]
+            fn sum(&self, checksum: &mut Checksum) {
+                let $value = *self;
+                checksum.add($bits);
+            }
+        })*
+    };
+}
+
+summed_numbers! {
+    u8: |value| value.into();
+    u32: |value| value;
+    i32: |value| value.cast_unsigned();
+    f32: |value| value.to_bits();
+}
+
+impl Summed for usize {
+    fn sum(&self, checksum: &mut Checksum) {
+        checksum.add_long(*self as u64);
+    }
+}
+
+impl Summed for f64 {
+    fn sum(&self, checksum: &mut Checksum) {
+        checksum.add_long(self.to_bits());
+    }
+}
+
+/// Implements [`Summed`] for a struct, naming all of its fields: one that is forgotten does not compile.
+macro_rules! summed {
+    ([$($generics:tt)*] $type:ty { $($field:ident),* $(,)? }) => {
+        impl<$($generics)*> $crate::checksum::Summed for $type {
+            fn sum(&self, checksum: &mut $crate::checksum::Checksum) {
+                let Self { $($field),* } = self;
+                $($crate::checksum::Summed::sum($field, checksum);)*
+            }
+        }
+    };
+}
+pub(crate) use summed;
+
+#[cfg(test)]
+mod tests {
+    use crate::checksum::Checksum;
+    use crate::muscle::{ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle};
+    use crate::params::{FiberParams, MuscleParams};
+    use crate::presets::paper_table_1::{ELEMENTS, FAST, SLOW};
+    use crate::recruitment::{MotorUnits, UnitSizes};
+    use crate::scalar::Scalar;
+    use crate::scalar::fixed::Fixed;
+    use crate::time_step::TimeStep;
+
+    #[test]
+    fn a_word_that_differs_is_seen_wherever_it_is() {
+        let sum = |words: &[u32]| {
+            let mut checksum = Checksum::EMPTY;
+            words.iter().for_each(|&word| checksum.add(word));
+            checksum.value()
+        };
+        let words = [0, 1, 0x8000_0000, u32::MAX, 12345];
+        for index in 0..words.len() {
+            for bit in 0..32 {
+                let mut other = words;
+                other[index] ^= 1 << bit;
+                assert_ne!(sum(&words), sum(&other), "word {index} bit {bit}");
+            }
+        }
+        assert_ne!(sum(&[1, 2]), sum(&[2, 1]));
+    }
+
+    /// Every coefficient that depends on a parameter is in the sum: change any parameter a little.
+    fn parameters_are_in_the_sum<S: Scalar>() {
+        let muscle = MuscleParams {
+            mass: 97.5e-3,
+            fascicle_length: 0.11,
+            tendon_length: 0.02,
+            max_path_length: 0.184,
+            recruitment_saturation: 0.8,
+            elements: ELEMENTS,
+            fibers: [
+                FiberParams { fraction: 0.6, fiber_type: SLOW },
+                FiberParams { fraction: 0.4, fiber_type: FAST },
+            ],
+        };
+        let step = TimeStep::MILLISECOND;
+        let sums = |params: &MuscleParams<2>, step| {
+            let units =
+                MotorUnits::<3>::new(params, [UnitSizes::Default(2), UnitSizes::Default(1)])
+                    .expect("units");
+            [
+                ContinuousMuscle::<S, 2>::build(params, step).expect("a muscle").checksum(),
+                FesMuscle::<S, 2>::build(params, step).expect("a muscle").checksum(),
+                DiscreteMuscle::<S, 2, 3>::build_with_units(params, &units, step)
+                    .expect("a muscle")
+                    .checksum(),
+                EffectiveLengthMuscle::<S, 2, 3>::build_with_units(params, &units, step)
+                    .expect("a muscle")
+                    .checksum(),
+            ]
+        };
+        let before = sums(&muscle, step);
+        let check = |what: &str, change: &dyn Fn(&mut MuscleParams<2>), modes: &[usize]| {
+            let mut other = muscle;
+            change(&mut other);
+            let after = sums(&other, step);
+            for (mode, (before, after)) in before.iter().zip(&after).enumerate() {
+                assert_eq!(before != after, modes.contains(&mode), "{what}, mode {mode}");
+            }
+        };
+        let all = &[0, 1, 2, 3];
+        check("nothing", &|_| (), &[]);
+        check("mass", &|m| m.mass *= 1.01, all);
+        check("fascicle_length", &|m| m.fascicle_length *= 1.01, all);
+        check("tendon_length", &|m| m.tendon_length *= 1.01, all);
+        check("max_path_length", &|m| m.max_path_length *= 1.01, all);
+        // FES has no thresholds, and only there frequency is in pps.
+        check("recruitment_saturation", &|m| m.recruitment_saturation = 0.7, &[0, 2, 3]);
+        check("tendon.stiffness", &|m| m.elements.tendon.stiffness *= 1.01, all);
+        check("tendon.toe", &|m| m.elements.tendon.toe *= 1.01, all);
+        check("parallel.stiffness", &|m| m.elements.parallel.stiffness *= 1.01, all);
+        check("parallel.viscosity", &|m| m.elements.parallel.viscosity *= 1.01, all);
+        check("compression.strength", &|m| m.elements.compression.strength *= 1.01, all);
+        check("compression.onset", &|m| m.elements.compression.onset_length *= 1.01, all);
+        for fiber in 0..2 {
+            let of = |m: &mut MuscleParams<2>, change: fn(&mut crate::params::FiberType)| {
+                change(&mut m.fibers[fiber].fiber_type);
+            };
+            check("half_force", &|m| of(m, |t| t.half_force_frequency *= 1.01), &[1]);
+            check("force_length.width", &|m| of(m, |t| t.force_length.width *= 1.01), all);
+            check("skewness", &|m| of(m, |t| t.force_length.skewness *= 1.01), all);
+            check("roundness", &|m| of(m, |t| t.force_length.roundness *= 1.01), all);
+            check("shortening", &|m| of(m, |t| t.force_velocity.shortening[0] *= 1.01), all);
+            check("lengthening", &|m| of(m, |t| t.force_velocity.lengthening[0] *= 1.01), all);
+            check("b_V", &|m| of(m, |t| t.force_velocity.lengthening_velocity *= 1.01), all);
+            check("scale", &|m| of(m, |t| t.activation.scale *= 1.01), all);
+            check("exponent", &|m| of(m, |t| t.activation.exponent *= 1.01), all);
+            check("rise", &|m| of(m, |t| t.excitation.rise *= 1.01), all);
+            check("fall", &|m| of(m, |t| t.excitation.fall_per_activation *= 1.01), all);
+            check("T_L", &|m| of(m, |t| t.effective_length_time *= 1.01), &[3]);
+        }
+        let slow: fn(&mut MuscleParams<2>) = |m| {
+            m.fibers[0].fiber_type.yielding.as_mut().expect("yield").time_constant *= 1.01;
+        };
+        check("yield", &slow, all);
+        let fast: fn(&mut MuscleParams<2>) = |m| {
+            m.fibers[1].fiber_type.sag.as_mut().expect("sag").firing_level *= 1.01;
+        };
+        check("sag", &fast, all);
+        let other = TimeStep::from_seconds(0.99e-3).expect("a step");
+        assert!(before.iter().zip(sums(&muscle, other)).all(|(before, after)| *before != after));
+    }
+
+    #[test]
+    fn every_parameter_is_in_the_sum_of_a_muscle() {
+        parameters_are_in_the_sum::<f32>();
+        parameters_are_in_the_sum::<Fixed>();
+        parameters_are_in_the_sum::<f64>();
+    }
+}
