@@ -1,33 +1,30 @@
-//! What the tick and the pulse timer do with supervision, schedule and output stage.
+//! The half of the stimulator that the tick drives: supervision, and what may be put out until the next one.
 
-use crate::output::OutputStage;
+use crate::gate::Gate;
+use crate::plan::Plan;
 use crate::safety::{CHANNELS, Fault, Limits, NotArmed, Observed, State, Supervisor};
-use crate::schedule::Schedule;
 use crate::stimulus::{Scale, Stimulus};
-use embedded_hal::digital::OutputPin;
-use embedded_hal::spi::SpiDevice;
+use heapless::spsc::Producer;
 
 /// A supervised stimulator.
-#[derive(Debug)]
-pub struct Controller<D, P> {
+pub struct Controller<'q> {
     supervisor: Supervisor,
-    schedule: Schedule<CHANNELS>,
-    stage: OutputStage<D, P, CHANNELS>,
-    /// What the schedule was last told.
-    scheduled: [Option<Stimulus>; CHANNELS],
-    output_answers: bool,
+    scale: Scale,
+    plans: Producer<'q, Plan<CHANNELS>>,
+    gate: &'q Gate,
 }
 
-impl<D: SpiDevice, P: OutputPin> Controller<D, P> {
-    /// Off, with the fault [`Fault::Boot`] to be acknowledged.
-    pub fn new(limits: Limits, scale: Scale, stage: OutputStage<D, P, CHANNELS>) -> Self {
-        Self {
-            supervisor: Supervisor::new(limits),
-            schedule: Schedule::new(scale),
-            stage,
-            scheduled: [None; CHANNELS],
-            output_answers: true,
-        }
+impl<'q> Controller<'q> {
+    /// Off, with a fault of [`Supervisor::new`] to be acknowledged; for a tick of so many µs.
+    pub fn new(
+        limits: Limits,
+        tick_us: u32,
+        boot: Fault,
+        scale: Scale,
+        plans: Producer<'q, Plan<CHANNELS>>,
+        gate: &'q Gate,
+    ) -> Self {
+        Self { supervisor: Supervisor::new(limits, tick_us, boot), scale, plans, gate }
     }
 
     /// Where supervision is.
@@ -35,10 +32,20 @@ impl<D: SpiDevice, P: OutputPin> Controller<D, P> {
         self.supervisor.state()
     }
 
-    /// See [`Supervisor::acknowledge`]. The output stage gets another chance.
+    /// See [`Supervisor::wrong`].
+    pub fn wrong(&self) -> Option<Fault> {
+        self.supervisor.wrong()
+    }
+
+    /// Whether the host was heard of since this was asked last.
+    pub(crate) fn take_heard(&self) -> bool {
+        self.gate.take_heard()
+    }
+
+    /// See [`Supervisor::acknowledge`]. What was late before does not count any more.
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         self.supervisor.acknowledge(seen)?;
-        self.output_answers = self.stage.neutral().is_ok();
+        self.gate.set_late(false);
         Ok(())
     }
 
@@ -47,47 +54,34 @@ impl<D: SpiDevice, P: OutputPin> Controller<D, P> {
         self.supervisor.arm()
     }
 
-    /// The hard tick, every millisecond. Where stimulation is not allowed, everything is neutral when it returns.
-    pub fn tick(&mut self, observed: &Observed, requested: &[Option<Stimulus>; CHANNELS]) {
-        let output_answers = observed.output_answers && self.output_answers;
-        let observed = Observed { output_answers, ..*observed };
+    /// Latches a fault, or a stop, at once. The pulse timer's interrupt is to be called for then.
+    pub fn fail(&mut self, fault: Fault) {
+        self.supervisor.fail(fault);
+        self.gate.set_open(self.state() == State::Armed);
+    }
+
+    /// The hard tick. Where stimulation is not allowed it returns false, and the pulse timer's interrupt is to be
+    /// called for: everything is neutral when that has passed.
+    #[must_use]
+    pub fn tick(&mut self, observed: &Observed, requested: &[Option<Stimulus>; CHANNELS]) -> bool {
+        let observed = Observed {
+            in_time: observed.in_time && !self.gate.is_late(),
+            output_answers: observed.output_answers && !self.gate.output_failed(),
+            ..*observed
+        };
         let allowed = self.supervisor.tick(&observed, requested);
-        // Twice: what is too much may fit once another channel has given way.
-        for _ in 0..2 {
-            self.schedule_changes(&allowed);
-        }
-        if self.scheduled != allowed {
-            self.supervisor.fail(Fault::Request);
-        }
-        if self.supervisor.state() != State::Armed {
-            self.halt();
-        }
-    }
-
-    /// The pulse timer has run out: puts out the next step, and says when it runs out again (µs).
-    pub fn timer(&mut self) -> u32 {
-        let step = self.schedule.advance();
-        if self.stage.apply(&step).is_err() {
-            self.output_answers = false;
-            self.supervisor.fail(Fault::Output);
-            self.halt();
-        }
-        step.duration_us
-    }
-
-    fn schedule_changes(&mut self, allowed: &[Option<Stimulus>; CHANNELS]) {
-        for (channel, (&wanted, scheduled)) in allowed.iter().zip(&mut self.scheduled).enumerate() {
-            if wanted != *scheduled && self.schedule.set(channel, wanted).is_ok() {
-                *scheduled = wanted;
+        if self.state() == State::Armed {
+            match Plan::new(&allowed, &self.scale) {
+                Err(_) => self.supervisor.fail(Fault::Request),
+                // The pulse timer takes several in a tick; it has stopped if there is no room.
+                Ok(plan) if self.plans.enqueue(plan).is_err() => {
+                    self.supervisor.fail(Fault::Output);
+                }
+                Ok(_) => (),
             }
         }
-    }
-
-    fn halt(&mut self) {
-        self.schedule.halt();
-        self.scheduled = [None; CHANNELS];
-        if self.stage.neutral().is_err() {
-            self.output_answers = false;
-        }
+        let armed = self.state() == State::Armed;
+        self.gate.set_open(armed);
+        armed
     }
 }

@@ -1,25 +1,47 @@
 //! The stimulator controller's logic, free of any chip: testable on a host.
 //!
-//! [`Schedule`] says which channel's [`Pulse`] comes when, and [`OutputStage`] puts it out over
-//! `embedded-hal`. [`Rig::tick`] is what the 1 kHz interrupt runs; where its inputs come from and where its
-//! results go are the [`Inputs`] and [`Record`] it is given.
+//! Three things run, each above the next and never waiting for it:
+//!
+//! 1. the pulse timer: [`Pulses`] puts out what [`Schedule`] says is due, for as long as the tick allows it;
+//! 2. the hard tick: [`Device`] steps the muscles and supervises the stimulator;
+//! 3. the link: [`Server`] takes what a host asks for, and gives back what the muscles do.
+//!
+//! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues of [`Lines`].
 #![no_std]
 
 mod controller;
+mod deadline;
+mod device;
+mod driven;
 #[cfg(feature = "board")]
 pub mod end;
+mod gate;
+pub mod link;
 mod output;
+mod plan;
+mod pulses;
+mod ram;
 mod rig;
 pub mod safety;
 mod scenario;
 mod schedule;
+mod server;
 mod stimulus;
+mod storage;
 mod waveform;
 
 pub use controller::Controller;
+pub use deadline::Deadline;
+pub use device::{Device, Lines, LinkEnds, MUSCLES, TYPES, TickEnds};
+pub use gate::Gate;
 pub use output::{Bridge, OutputError, OutputStage};
+pub use plan::Plan;
+pub use pulses::Pulses;
+pub use ram::RamFlash;
 pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};
 pub use scenario::{Scenario, TICKS};
 pub use schedule::{Schedule, Step};
-pub use stimulus::{Scale, Stimulus, StimulusError};
+pub use server::Server;
+pub use stimulus::{LEAST_PHASE_US, Scale, Stimulus, StimulusError};
+pub use storage::{MOST_STORED, NotStored, Slots};
 pub use waveform::{Direction, Phase, Pulse};

@@ -1,6 +1,9 @@
 //! Whether stimulation may go on: limits, inputs that must make sense, and faults that stay until somebody has
 //! seen them. One pass per tick, in integers, without generics.
 //!
+//! Everything is off at boot. A fault latches: somebody has to name it ([`Supervisor::acknowledge`]), and then arm
+//! ([`Supervisor::arm`]) within ten seconds and with the cause gone.
+//!
 //! What shaped the limits: IEC 60601-2-10:2012, for stimulators in physical medicine, allows into 500 Ω at most
 //! 300 mJ per pulse and, up to 400 Hz, 50 mA r.m.s.; and asks for particular care above 2 mA r.m.s. per cm² of
 //! electrode. This is no claim of conformity, which nobody can make for a module; and equipment with implanted
@@ -8,6 +11,7 @@
 //! that the electrode in question bears.
 
 use crate::stimulus::Stimulus;
+use serde::{Deserialize, Serialize};
 
 /// Channels that are supervised together.
 pub const CHANNELS: usize = 4;
@@ -37,8 +41,8 @@ pub struct Limits {
     pub supply_mv: (u32, u32),
     /// Path length of the muscle, µm.
     pub path_um: (i32, i32),
-    /// How far that may move in a tick, µm.
-    pub path_step_um: u32,
+    /// How fast that may move, mm/s.
+    pub path_speed_mm_s: u32,
     /// How long that may stay the same to the µm while there is stimulation, ms: a sensor has noise.
     pub stuck_ms: u32,
 }
@@ -58,13 +62,13 @@ impl Limits {
         impedance_ohm: (100, 5_000),
         supply_mv: (3_000, 4_300),
         path_um: (50_000, 500_000),
-        path_step_um: 1_000,
+        path_speed_mm_s: 1_000,
         stuck_ms: 2_000,
     };
 }
 
 /// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Fault {
     /// Nothing yet: this is how everything starts.
     Boot,
@@ -106,6 +110,8 @@ pub enum Fault {
     Output,
     /// A stimulus was asked for that the stimulator cannot do.
     Request,
+    /// Somebody has stopped it, which is not a fault, and takes the same two steps to go on.
+    Stopped,
 }
 
 /// What a tick sees.
@@ -119,25 +125,23 @@ pub struct Observed {
     pub supply_mv: u32,
     /// Path length, µm; none if the sensor gave no number.
     pub path_um: Option<i32>,
-    /// The last tick finished, and in time.
+    /// The last tick began and finished in time.
     pub in_time: bool,
-    /// The controller was restarted by its watchdog.
-    pub restarted_by_watchdog: bool,
-    /// Checksum of state and parameters now, and as the last tick left them.
-    pub checksums: [u32; 2],
+    /// State and parameters are what the last tick left.
+    pub memory_is_intact: bool,
     /// The output stage has answered.
     pub output_answers: bool,
 }
 
 /// Where the two steps of arming are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
     /// Off because of the fault, until somebody names it.
     Latched(Fault),
     /// Off; the fault has been named, and arming may follow within so many ms.
     Acknowledged {
-        /// ms that are left.
-        left_ms: u32,
+        /// µs that are left.
+        left_us: u32,
         /// The fault that comes back when they are over.
         fault: Fault,
     },
@@ -146,7 +150,7 @@ pub enum State {
 }
 
 /// Why arming was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotArmed {
     /// No fault of that name is latched.
     OtherFault,
@@ -156,21 +160,22 @@ pub enum NotArmed {
     StillThere(Fault),
 }
 
-/// From acknowledging to arming, ms.
-const ARMING_MS: u32 = 10_000;
+/// From acknowledging to arming, µs.
+const ARMING_US: u32 = 10_000_000;
 
 /// Supervises stimulation.
 #[derive(Clone, Debug)]
 pub struct Supervisor {
     limits: Limits,
+    tick_us: u32,
     state: State,
     /// What was wrong with the inputs of the last tick, if anything.
     wrong: Option<Fault>,
-    silence_ms: u32,
-    session_ms: u32,
-    stuck_ms: u32,
+    silence_us: u32,
+    session_us: u32,
+    stuck_us: u32,
     path_before: Option<i32>,
-    /// How far each amplitude has risen, thousandths of µA.
+    /// How far each amplitude has risen, millionths of µA.
     risen: [u64; CHANNELS],
 }
 
@@ -178,15 +183,17 @@ pub struct Supervisor {
 const NEUTRAL: [Option<Stimulus>; CHANNELS] = [None; CHANNELS];
 
 impl Supervisor {
-    /// Off, as at every boot.
-    pub const fn new(limits: Limits) -> Self {
+    /// Off, as at every boot, and latched: with [`Fault::Boot`], or [`Fault::Watchdog`] if that is why it boots.
+    /// For a tick of so many µs, 500 to 2,000.
+    pub const fn new(limits: Limits, tick_us: u32, boot: Fault) -> Self {
         Self {
             limits,
-            state: State::Latched(Fault::Boot),
-            wrong: Some(Fault::Boot),
-            silence_ms: 0,
-            session_ms: 0,
-            stuck_ms: 0,
+            tick_us,
+            state: State::Latched(boot),
+            wrong: Some(boot),
+            silence_us: 0,
+            session_us: 0,
+            stuck_us: 0,
             path_before: None,
             risen: [0; CHANNELS],
         }
@@ -197,11 +204,16 @@ impl Supervisor {
         self.state
     }
 
+    /// What was wrong with the inputs of the last tick, if anything.
+    pub fn wrong(&self) -> Option<Fault> {
+        self.wrong
+    }
+
     /// First step: somebody has seen the fault, and says which.
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         match self.state {
             State::Latched(fault) | State::Acknowledged { fault, .. } if fault == seen => {
-                self.state = State::Acknowledged { left_ms: ARMING_MS, fault };
+                self.state = State::Acknowledged { left_us: ARMING_US, fault };
                 Ok(())
             }
             _ => Err(NotArmed::OtherFault),
@@ -215,13 +227,13 @@ impl Supervisor {
             return Err(NotArmed::StillThere(fault));
         }
         self.state = State::Armed;
-        self.session_ms = 0;
-        self.stuck_ms = 0;
+        self.session_us = 0;
+        self.stuck_us = 0;
         self.risen = [0; CHANNELS];
         Ok(())
     }
 
-    /// One tick of 1 ms: what of the request may be put out until the next one.
+    /// One tick: what of the request may be put out until the next one.
     pub fn tick(
         &mut self,
         observed: &Observed,
@@ -235,13 +247,15 @@ impl Supervisor {
                 if let Some(fault) = demand {
                     return self.latch(fault);
                 }
-                self.session_ms = self.session_ms.saturating_add(u32::from(stimulates));
+                let stimulated_us = if stimulates { self.tick_us } else { 0 };
+                self.session_us = self.session_us.saturating_add(stimulated_us);
                 self.slowed(requested)
             }
             (State::Armed, Some(fault)) => self.latch(fault),
-            (State::Acknowledged { left_ms: 0, fault }, _) => self.latch(fault),
-            (State::Acknowledged { left_ms, fault }, _) => {
-                self.state = State::Acknowledged { left_ms: left_ms - 1, fault };
+            (State::Acknowledged { left_us: 0, fault }, _) => self.latch(fault),
+            (State::Acknowledged { left_us, fault }, _) => {
+                let left_us = left_us.saturating_sub(self.tick_us);
+                self.state = State::Acknowledged { left_us, fault };
                 NEUTRAL
             }
             (State::Latched(_), _) => NEUTRAL,
@@ -268,17 +282,16 @@ impl Supervisor {
         stimulates: bool,
     ) -> Option<Fault> {
         let limits = self.limits;
-        self.silence_ms = if observed.host_heard { 0 } else { self.silence_ms.saturating_add(1) };
+        count(&mut self.silence_us, !observed.host_heard, self.tick_us);
         let sensor = self.wrong_sensor(observed.path_um, stimulates);
         let faults = [
-            (observed.checksums[0] != observed.checksums[1]).then_some(Fault::Checksum),
-            observed.restarted_by_watchdog.then_some(Fault::Watchdog),
+            (!observed.memory_is_intact).then_some(Fault::Checksum),
             (!observed.output_answers).then_some(Fault::Output),
             (!observed.in_time).then_some(Fault::Deadline),
             outside(observed.supply_mv, limits.supply_mv).map(|_| Fault::Supply),
             wrong_electrode(observed, requested, limits.impedance_ohm),
             sensor,
-            (self.silence_ms > limits.silence_ms).then_some(Fault::Silence),
+            (self.silence_us / 1000 > limits.silence_ms).then_some(Fault::Silence),
         ];
         faults.into_iter().flatten().next()
     }
@@ -289,13 +302,14 @@ impl Supervisor {
         let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
         self.path_before = Some(path);
         let (least, most) = self.limits.path_um;
-        let stays = stimulates && moved == 0;
-        self.stuck_ms = if stays { self.stuck_ms.saturating_add(1) } else { 0 };
+        count(&mut self.stuck_us, stimulates && moved == 0, self.tick_us);
+        // mm/s times µs are thousandths of µm.
+        let most_moved = u64::from(self.limits.path_speed_mm_s) * u64::from(self.tick_us) / 1000;
         if !(least..=most).contains(&path) {
             Some(Fault::SensorRange)
-        } else if moved > self.limits.path_step_um {
+        } else if u64::from(moved) > most_moved {
             Some(Fault::SensorJump)
-        } else if self.stuck_ms > self.limits.stuck_ms {
+        } else if self.stuck_us / 1000 > self.limits.stuck_ms {
             Some(Fault::SensorStuck)
         } else {
             None
@@ -305,7 +319,7 @@ impl Supervisor {
     /// What is wrong with a request, and with how long requests have gone on.
     fn wrong_request(&self, requested: &[Option<Stimulus>; CHANNELS]) -> Option<Fault> {
         let limits = &self.limits;
-        if self.session_ms >= limits.session_ms {
+        if self.session_us / 1000 >= limits.session_ms {
             return Some(Fault::Session);
         }
         requested.iter().flatten().find_map(|stimulus| {
@@ -334,14 +348,21 @@ impl Supervisor {
                 *risen = 0;
                 continue;
             };
-            // In a tick of 1 ms there are f/10,000 pulses, f being in tenths.
-            let rise = u64::from(self.limits.rise_ua) * u64::from(stimulus.frequency_tenths_pps);
-            *risen = (*risen + rise / 10).min(u64::from(stimulus.amplitude_ua) * 1000);
+            // In a tick of t µs there are f t/10^7 pulses, f being in tenths.
+            let rise = u64::from(self.limits.rise_ua)
+                * u64::from(stimulus.frequency_tenths_pps)
+                * u64::from(self.tick_us);
+            *risen = (*risen + rise / 10).min(u64::from(stimulus.amplitude_ua) * 1_000_000);
             // No more than the amplitude, which has 32 bits.
-            stimulus.amplitude_ua = (*risen / 1000) as u32;
+            stimulus.amplitude_ua = (*risen / 1_000_000) as u32;
         }
         allowed
     }
+}
+
+/// Counts µs as long as something goes on: half an hour and more fit.
+fn count(total_us: &mut u32, goes_on: bool, tick_us: u32) {
+    *total_us = if goes_on { total_us.saturating_add(tick_us) } else { 0 };
 }
 
 /// Below or above a range: false or true.

@@ -4,7 +4,8 @@
 //! is due while another is running starts when that has ended, so that it is late by at most one pulse of every
 //! other channel; the one after it is due as if it had not been late.
 
-use crate::stimulus::{Scale, Stimulus, StimulusError, within};
+use crate::plan::{Plan, Train};
+use crate::stimulus::LEAST_PHASE_US;
 use crate::waveform::{Phase, Pulse};
 
 /// What the output stage is to do until the next call.
@@ -12,94 +13,112 @@ use crate::waveform::{Phase, Pulse};
 pub struct Step {
     /// The channel and its current; none between pulses.
     pub output: Option<(usize, Phase)>,
-    /// How long, µs; at least 1.
+    /// How long, µs; [`LEAST_PHASE_US`] to [`Step::LONGEST_US`].
     pub duration_us: u32,
 }
 
-/// Between pulses, new stimuli are looked for so often, µs.
-const IDLE_US: u32 = 250;
-/// Share of the time that pulses of all channels may take, thousandths: what is left makes up for waiting.
-const MOST_LOAD: u32 = 900;
+impl Step {
+    /// No step is longer, µs: at its end, whoever drives the schedule looks for what has changed.
+    pub const LONGEST_US: u32 = 500;
+    /// Nothing for a while.
+    pub const IDLE: Self = Self { output: None, duration_us: 250 };
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Channel {
     /// None while the channel is off; its rhythm goes on, or off and on again would be a way round frequencies.
     pulse: Option<Pulse>,
     period_us: u32,
-    duration_us: u32,
     /// From now until the next pulse is due, µs; negative once it is.
     due_us: i32,
+}
+
+/// A pulse on its way.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    channel: usize,
+    /// As it was when it began.
+    pulse: Pulse,
+    /// Index of the phase that comes, and what is left of it, µs.
+    phase: usize,
+    left_us: u32,
 }
 
 /// The pulses of all channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule<const CHANNELS: usize> {
-    scale: Scale,
     channels: [Option<Channel>; CHANNELS],
-    /// The channel, its pulse as it was when it began, and its next phase.
-    running: Option<(usize, Pulse, usize)>,
+    running: Option<Running>,
+}
+
+impl<const CHANNELS: usize> Default for Schedule<CHANNELS> {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl<const CHANNELS: usize> Schedule<CHANNELS> {
     /// No channel does anything.
-    pub const fn new(scale: Scale) -> Self {
-        Self { scale, channels: [None; CHANNELS], running: None }
+    pub const fn new() -> Self {
+        Self { channels: [None; CHANNELS], running: None }
     }
 
-    /// Sets what a channel does from its next pulse on, or refuses and leaves it as it was; `None` for no more
-    /// pulses. A pulse that is running ends as it began.
-    pub fn set(&mut self, channel: usize, stimulus: Option<Stimulus>) -> Result<(), StimulusError> {
-        within("channel", channel as u32, 0, CHANNELS.saturating_sub(1) as u32)?;
-        let Some(place) = self.channels.get(channel) else { return Ok(()) };
-        let wanted = match stimulus {
-            None => place.map(|before| Channel { pulse: None, ..before }),
-            Some(stimulus) => {
-                let pulse = Pulse::new(&stimulus, &self.scale)?;
-                let (period_us, duration_us) = (stimulus.period_us(), stimulus.duration_us());
-                let others =
-                    self.channels.iter().enumerate().filter(|(other, _)| *other != channel);
-                let load = others.filter_map(|(_, one)| *one).map(|one| one.load()).sum::<u32>();
-                let added = Channel { pulse: Some(pulse), period_us, duration_us, due_us: 0 };
-                within("load: thousandths of the time", load + added.load(), 0, MOST_LOAD)?;
-                // A rhythm goes on; a new one, or one that has been off for long, begins at once.
-                let due_us = place.map_or(0, |before| {
-                    let due_us = before.due_us.min(period_us as i32);
-                    if before.pulse.is_some() { due_us } else { due_us.max(0) }
-                });
-                Some(Channel { due_us, ..added })
-            }
-        };
-        if let Some(place) = self.channels.get_mut(channel) {
-            *place = wanted;
+    /// Follows another plan from each channel's next pulse on. A pulse that is running ends as it began.
+    pub fn follow(&mut self, plan: &Plan<CHANNELS>) {
+        for (place, train) in self.channels.iter_mut().zip(&plan.trains) {
+            *place = match *train {
+                None => place.map(|before| Channel { pulse: None, ..before }),
+                Some(Train { pulse, period_us }) => {
+                    // A rhythm goes on; a new one, or one that has been off for long, begins at once.
+                    let due_us = place.map_or(0, |before| {
+                        // Periods are a second at most.
+                        let due_us = before.due_us.min(period_us as i32);
+                        if before.pulse.is_some() { due_us } else { due_us.max(0) }
+                    });
+                    Some(Channel { pulse: Some(pulse), period_us, due_us })
+                }
+            };
         }
-        Ok(())
     }
 
-    /// Forgets all stimuli, and the pulse that is running: what is put out next is nothing.
+    /// Forgets everything, the pulse that is running as well: what is put out next is nothing.
     pub fn halt(&mut self) {
-        self.channels = [None; CHANNELS];
-        self.running = None;
+        *self = Self::new();
+    }
+
+    /// Whether nothing will come by itself.
+    pub fn is_idle(&self) -> bool {
+        self.running.is_none() && self.channels.iter().flatten().all(|one| one.pulse.is_none())
     }
 
     /// What is put out now, and for how long. To be called when the last step has lasted as long as it said.
     pub fn advance(&mut self) -> Step {
         let step = self.phase().unwrap_or_else(|| self.start());
         for channel in self.channels.iter_mut().flatten() {
-            // A step lasts 8 ms at most, and a pulse is late by less than a second.
+            // A step is short, and a pulse is late by less than a second.
             channel.due_us = channel.due_us.saturating_sub(step.duration_us as i32);
         }
         step
     }
 
-    /// The next phase of the pulse that is running.
+    /// What is left of the pulse that is running.
     fn phase(&mut self) -> Option<Step> {
-        let (channel, pulse, mut index) = self.running.take()?;
-        while let Some(&phase) = pulse.phases.get(index) {
-            index += 1;
-            if phase.duration_us > 0 {
-                self.running = Some((channel, pulse, index));
-                let duration_us = phase.duration_us.into();
-                return Some(Step { output: Some((channel, phase)), duration_us });
+        let mut running = self.running.take()?;
+        while let Some(&phase) = running.pulse.phases.get(running.phase) {
+            let left_us = running.left_us;
+            let duration_us = if left_us <= Step::LONGEST_US {
+                running.phase += 1;
+                running.left_us = duration(&running.pulse, running.phase);
+                left_us
+            } else {
+                // Neither piece may be shorter than the shortest phase.
+                let piece_us = Step::LONGEST_US.min(left_us - LEAST_PHASE_US);
+                running.left_us = left_us - piece_us;
+                piece_us
+            };
+            if duration_us > 0 {
+                self.running = Some(running);
+                return Some(Step { output: Some((running.channel, phase)), duration_us });
             }
         }
         None
@@ -108,29 +127,29 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
     /// The first phase of the pulse that is due first, or nothing until one is.
     fn start(&mut self) -> Step {
         let of_channel = |(index, channel): (usize, &Option<Channel>)| {
-            channel.filter(|channel| channel.pulse.is_some()).map(|channel| (channel.due_us, index))
+            channel.and_then(|one| one.pulse.map(|pulse| (one.due_us, index, pulse)))
         };
-        let first = self.channels.iter().enumerate().filter_map(of_channel).min();
-        match first {
-            Some((due_us, index)) if due_us <= 0 => {
-                if let Some(channel) = self.channels.get_mut(index).and_then(Option::as_mut) {
-                    channel.due_us += channel.period_us as i32;
-                    self.running = channel.pulse.map(|pulse| (index, pulse, 0));
+        let all = self.channels.iter().enumerate().filter_map(of_channel);
+        match all.min_by_key(|(due_us, index, _)| (*due_us, *index)) {
+            Some((due_us, channel, pulse)) if due_us <= 0 => {
+                if let Some(Some(one)) = self.channels.get_mut(channel) {
+                    one.due_us += one.period_us as i32;
                 }
-                self.phase().unwrap_or(Step { output: None, duration_us: 1 })
+                let left_us = duration(&pulse, 0);
+                self.running = Some(Running { channel, pulse, phase: 0, left_us });
+                self.phase().unwrap_or(Step::IDLE)
             }
-            Some((due_us, _)) => Step { output: None, duration_us: (due_us as u32).min(IDLE_US) },
-            None => Step { output: None, duration_us: IDLE_US },
+            // Not exactly when it is due, if that is very soon: a step has its shortest length.
+            Some((due_us, ..)) => {
+                let duration_us = (due_us as u32).clamp(LEAST_PHASE_US, Step::IDLE.duration_us);
+                Step { output: None, duration_us }
+            }
+            None => Step::IDLE,
         }
     }
 }
 
-impl Channel {
-    /// Share of the time that its pulses take, thousandths, rounded up.
-    fn load(&self) -> u32 {
-        if self.pulse.is_none() {
-            return 0;
-        }
-        (self.duration_us * 1000).div_ceil(self.period_us.max(1))
-    }
+/// Of a phase, µs; nothing after the last.
+fn duration(pulse: &Pulse, phase: usize) -> u32 {
+    pulse.phases.get(phase).map_or(0, |phase| phase.duration_us.into())
 }

@@ -1,15 +1,20 @@
 //! What a channel is to do, and what a stimulator can.
 
 use core::fmt;
+use serde::{Deserialize, Serialize};
+
+/// Shortest phase, µs: the pulse timer's interrupt that begins it sets how long the next one lasts, and has to be
+/// through by then.
+pub const LEAST_PHASE_US: u32 = 20;
 
 /// Pulses of one channel, until it is told otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stimulus {
     /// Of the phase that stimulates, µA; 0 to [`Scale::full_scale_ua`].
     pub amplitude_ua: u32,
-    /// Of the phase that stimulates, µs; 10 to 1,000.
+    /// Of the phase that stimulates, µs; [`LEAST_PHASE_US`] to 1,000.
     pub width_us: u16,
-    /// Between the phases, µs; 0 to 200.
+    /// Between the phases, µs; none, or [`LEAST_PHASE_US`] to 200.
     pub gap_us: u16,
     /// Pulses in ten seconds; 10 (one a second) to 5,000.
     pub frequency_tenths_pps: u16,
@@ -77,10 +82,17 @@ impl Stimulus {
     /// broke.
     pub fn validate(&self, scale: &Scale) -> Result<(), StimulusError> {
         within("amplitude_ua", self.amplitude_ua, 0, scale.full_scale_ua)?;
-        within("width_us", self.width_us.into(), 10, 1000)?;
-        within("gap_us", self.gap_us.into(), 0, 200)?;
+        self.validate_shape()?;
         within("frequency_tenths_pps", self.frequency_tenths_pps.into(), 10, 5000)?;
-        within("recovery", self.recovery.into(), 1, 8)?;
         within("duration_us", self.duration_us(), 0, self.period_us())
+    }
+
+    /// The same of what does not change from pulse to pulse: width, gap and recovery.
+    pub(crate) fn validate_shape(&self) -> Result<(), StimulusError> {
+        within("width_us", self.width_us.into(), LEAST_PHASE_US, 1000)?;
+        if self.gap_us > 0 {
+            within("gap_us", self.gap_us.into(), LEAST_PHASE_US, 200)?;
+        }
+        within("recovery", self.recovery.into(), 1, 8)
     }
 }

@@ -8,6 +8,7 @@ pub mod cycles;
 pub mod engine;
 pub mod figures;
 pub mod golden;
+pub mod hil;
 pub mod link;
 pub mod metrics;
 pub mod muscle_file;

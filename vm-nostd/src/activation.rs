@@ -8,6 +8,7 @@ use crate::scalar::Scalar;
 
 /// Coefficients of Af.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ActivationParams {
     /// a_f, f0.5; 0.05 to 10.
     #[doc(alias = "af")]

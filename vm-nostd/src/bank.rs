@@ -19,11 +19,19 @@ pub enum BankedMuscle<S: Scalar, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
-    /// Checksums of its coefficients and of its state.
-    pub fn checksums(&self) -> [u32; 2] {
+    /// Checksum of its coefficients, as [`Muscle::checksum`](crate::Muscle::checksum).
+    pub fn coefficients_checksum(&self) -> u32 {
         match self {
-            Self::Continuous(muscle, state) => [muscle.checksum(), state.checksum()],
-            Self::Fes(muscle, state) => [muscle.checksum(), state.checksum()],
+            Self::Continuous(muscle, _) => muscle.checksum(),
+            Self::Fes(muscle, _) => muscle.checksum(),
+        }
+    }
+
+    /// Checksum of its state, as [`State::checksum`].
+    pub fn state_checksum(&self) -> u32 {
+        match self {
+            Self::Continuous(_, state) => state.checksum(),
+            Self::Fes(_, state) => state.checksum(),
         }
     }
 

@@ -19,6 +19,7 @@ pub struct ParameterError {
 /// What a parameter must be, in its field's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Limit {
     /// A number between two bounds, both allowed.
     Within {

@@ -10,6 +10,7 @@ use crate::time_step::TimeStep;
 
 /// Time constants of excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExcitationParams {
     /// T_f1, s per L_ce0²; 0.005 to 0.5.
     #[doc(alias = "Tf1")]

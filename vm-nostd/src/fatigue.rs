@@ -21,6 +21,7 @@ const SATURATING_FREQUENCY: f64 = 100.0;
 
 /// How fast a muscle tires, and recovers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FatigueParams {
     /// Time constant T_fat towards the least fitness at full activation and 100 pps, s; 1 to 1,000.
     #[doc(alias = "T_fat")]

@@ -6,6 +6,7 @@ use crate::scalar::Scalar;
 
 /// Coefficients of FL.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForceLengthParams {
     /// Width omega; 0.1 to 10.
     #[doc(alias = "omega")]

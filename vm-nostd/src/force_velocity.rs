@@ -12,6 +12,7 @@ use crate::scalar::Scalar;
 
 /// Coefficients of FV.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForceVelocityParams {
     /// Velocity of unloaded shortening V_max, L_ce0/s; -100 to -0.1.
     #[doc(alias = "Vmax")]

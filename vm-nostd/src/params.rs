@@ -15,6 +15,7 @@ use crate::yielding::YieldParams;
 
 /// Coefficients of a fibre type.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FiberType {
     /// Order of recruitment: super-slow 1, slow 2, fast 3; 1 to 255.
     pub rank: u8,
@@ -62,6 +63,7 @@ impl FiberType {
 
 /// A fibre type and its share of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FiberParams {
     /// Share of the physiological cross-sectional area; 0.001 to 1.
     pub fraction: f64,
@@ -71,6 +73,7 @@ pub struct FiberParams {
 
 /// Coefficients that all fibre types of a muscle share.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ElementParams {
     /// Tendon and aponeurosis.
     pub tendon: TendonParams,
@@ -96,6 +99,15 @@ impl ElementParams {
 
 /// A muscle of `N` fibre types.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+// An array of any length has no implementation of serde's traits; those of the lengths in use do.
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "[FiberParams; N]: serde::Serialize",
+        deserialize = "[FiberParams; N]: serde::Deserialize<'de>"
+    ))
+)]
 pub struct MuscleParams<const N: usize> {
     /// Mass m, kg; 1e-5 to 20. It makes the cross section, and with it F0, and half of it moves.
     pub mass: f64,

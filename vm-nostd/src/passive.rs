@@ -7,6 +7,7 @@ use crate::time_step::TimeStep;
 
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParallelParams {
     /// Stiffness of the stretched element c_1, F0 per L_max; 1 to 200.
     #[doc(alias = "c1")]
@@ -24,6 +25,7 @@ pub struct ParallelParams {
 
 /// Coefficients of F_pe2 = min(0, c2 (exp(k2 (L - Lr2)) - 1)).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CompressionParams {
     /// Strength c_2, F0; -1 to 0.
     #[doc(alias = "c2")]

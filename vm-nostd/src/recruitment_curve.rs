@@ -9,6 +9,7 @@
 //! the same turned about that point beyond. That rational form is ours: it has the slope m in the middle and
 //! 1/m at both ends, is exactly 0 and 1 where it should be, and has an inverse of the same form.
 
+use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Admission, Range, admit_one};
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
@@ -42,6 +43,7 @@ const GREATEST_STRENGTH: f64 = 100.0;
 
 /// How a muscle answers to the pulses of an electrode.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RecruitmentCurveParams {
     /// Amplitude of a very long pulse that recruits the first fibres (their rheobase), A; 1e-5 to 0.2.
     pub threshold: f64,
@@ -115,6 +117,10 @@ pub struct RecruitmentCurve<S: Scalar> {
     slope: S,
 }
 
+summed!([S: Scalar] RecruitmentCurve<S> {
+    amplitudes, widths, activations, per_saturation, saturation, per_chronaxie, chronaxie, threshold, reach, per_reach, slope
+});
+
 impl<S: Scalar> RecruitmentCurve<S> {
     /// Builds a curve, or refuses with the name of the field, its value and the limit it broke.
     pub fn build(params: &RecruitmentCurveParams) -> Result<Self, ParameterError> {
@@ -135,6 +141,13 @@ impl<S: Scalar> RecruitmentCurve<S> {
             per_reach: S::factor(1.0 / (1.0 - threshold)),
             slope: S::from_f64(params.slope),
         })
+    }
+
+    /// Checksum of all of its coefficients, as [`Muscle::checksum`](crate::Muscle::checksum).
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.sum(&mut checksum);
+        checksum.value()
     }
 
     /// The activation U (0..1) that a pulse recruits, and what had to be clipped.

@@ -9,6 +9,7 @@ use crate::time_step::TimeStep;
 
 /// Coefficients of sag.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SagParams {
     /// Level at rest a_S1; 0.01 to 10.
     #[doc(alias = "aS1")]

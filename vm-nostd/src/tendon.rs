@@ -8,6 +8,7 @@ use crate::time_step::TimeStep;
 
 /// Coefficients of the series elastic element.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TendonParams {
     /// Stiffness of the stretched tendon c_T, F0/L_se0; 1 to 200.
     #[doc(alias = "cT")]

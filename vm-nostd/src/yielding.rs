@@ -9,6 +9,7 @@ use crate::time_step::TimeStep;
 
 /// Coefficients of yield.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct YieldParams {
     /// Depth c_Y; 0 to 0.95.
     #[doc(alias = "cY")]

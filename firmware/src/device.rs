@@ -1,0 +1,265 @@
+//! What the hard tick does: a bank of muscles, what stimulates them, and supervision.
+
+use crate::controller::Controller;
+use crate::deadline::Deadline;
+use crate::driven::Driven;
+use crate::link::{MOST_WORDS, Readings, Report, RowInputs, RowOutputs, Traced};
+use crate::safety::{CHANNELS, Fault, NotArmed, Observed};
+use crate::stimulus::Stimulus;
+use heapless::Vec;
+use heapless::spsc::{Consumer, Producer, Queue};
+
+/// Muscles of a device.
+pub const MUSCLES: usize = 2;
+/// Fibre types of each muscle.
+pub const TYPES: usize = 2;
+
+/// Rows that can wait for their tick, and their outputs for the link.
+const WAITING: usize = 64;
+
+/// What the link asks of the tick.
+#[derive(Clone, Debug)]
+// A muscle is copied into the tick's place at once; nothing here is boxed.
+#[allow(clippy::large_enum_variant)]
+pub(crate) enum Order {
+    /// A muscle for a place.
+    Load(usize, Driven),
+    /// All muscles of places that have one, at rest; rows count from 0.
+    Rest([Option<Driven>; MUSCLES]),
+    Drive([Option<Stimulus>; CHANNELS]),
+    Readings(Readings),
+    Acknowledge(Fault),
+    Arm,
+    Stop,
+    Report,
+    Words(usize),
+}
+
+/// What the tick answers: one outcome for each order.
+#[derive(Clone, Debug)]
+pub(crate) enum Outcome {
+    Done,
+    NotArmed(NotArmed),
+    Report(Report),
+    Words(Vec<u32, MOST_WORDS>),
+    Empty,
+}
+
+/// Inputs of each muscle in a tick.
+pub(crate) type Row = [RowInputs; MUSCLES];
+
+/// Everything that goes between tick and link; neither ever waits for the other.
+pub struct Lines {
+    orders: Queue<Order, 2>,
+    outcomes: Queue<Outcome, 2>,
+    rows: Queue<Row, WAITING>,
+    traces: Queue<Traced, WAITING>,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Lines {
+    /// Empty.
+    pub const fn new() -> Self {
+        Self {
+            orders: Queue::new(),
+            outcomes: Queue::new(),
+            rows: Queue::new(),
+            traces: Queue::new(),
+        }
+    }
+
+    /// The tick's ends and the link's.
+    pub fn split(&mut self) -> (TickEnds<'_>, LinkEnds<'_>) {
+        let (give_order, take_order) = self.orders.split();
+        let (give_outcome, take_outcome) = self.outcomes.split();
+        let (give_row, take_row) = self.rows.split();
+        let (give_trace, take_trace) = self.traces.split();
+        (
+            TickEnds {
+                orders: take_order,
+                outcomes: give_outcome,
+                rows: take_row,
+                traces: give_trace,
+            },
+            LinkEnds {
+                orders: give_order,
+                outcomes: take_outcome,
+                rows: give_row,
+                traces: take_trace,
+            },
+        )
+    }
+}
+
+/// The tick's ends of [`Lines`].
+pub struct TickEnds<'q> {
+    orders: Consumer<'q, Order>,
+    outcomes: Producer<'q, Outcome>,
+    rows: Consumer<'q, Row>,
+    traces: Producer<'q, Traced>,
+}
+
+/// The link's ends of [`Lines`].
+pub struct LinkEnds<'q> {
+    pub(crate) orders: Producer<'q, Order>,
+    pub(crate) outcomes: Consumer<'q, Outcome>,
+    pub(crate) rows: Producer<'q, Row>,
+    pub(crate) traces: Consumer<'q, Traced>,
+}
+
+/// All that the hard tick owns.
+pub struct Device<'q> {
+    controller: Controller<'q>,
+    ends: TickEnds<'q>,
+    deadline: Deadline,
+    muscles: [Option<Driven>; MUSCLES],
+    /// What was asked for by itself, and what rows make of it.
+    driven: [Option<Stimulus>; CHANNELS],
+    requested: [Option<Stimulus>; CHANNELS],
+    readings: Readings,
+    /// The last tick was in time.
+    in_time: bool,
+    ticks: u32,
+    rows: u32,
+}
+
+impl<'q> Device<'q> {
+    /// Without muscles, and without readings of any sensor.
+    pub fn new(controller: Controller<'q>, ends: TickEnds<'q>, deadline: Deadline) -> Self {
+        Self {
+            controller,
+            ends,
+            deadline,
+            muscles: [const { None }; MUSCLES],
+            driven: [None; CHANNELS],
+            requested: [None; CHANNELS],
+            readings: Readings::default(),
+            in_time: true,
+            ticks: 0,
+            rows: 0,
+        }
+    }
+
+    /// A tick, which began so many counts of its timer after it was due. False where current must not flow: the
+    /// pulse timer's interrupt is to be called for before anything else is done.
+    ///
+    /// Bounded and free of waiting. Deadline: the next tick, for what [`finish`](Self::finish) says included.
+    #[must_use]
+    pub fn tick(&mut self, since_due: u32) -> bool {
+        self.deadline.begin(since_due);
+        self.ticks = self.ticks.wrapping_add(1);
+        self.obey();
+        let checksums_are_right = self.muscles.iter().flatten().all(Driven::is_intact);
+        self.advance();
+        let observed = Observed {
+            host_heard: self.controller.take_heard(),
+            impedance_ohm: self.readings.impedance_ohm,
+            supply_mv: self.readings.supply_mv,
+            path_um: self.readings.path_um,
+            in_time: self.in_time,
+            memory_is_intact: checksums_are_right,
+            output_answers: true,
+        };
+        self.controller.tick(&observed, &self.requested)
+    }
+
+    /// The tick ends, so many counts of its timer after it was due or, if that is so, after the next one was.
+    /// False where current must not flow, as with [`tick`](Self::tick).
+    #[must_use]
+    pub fn finish(&mut self, since_due: u32, next_is_due: bool) -> bool {
+        self.in_time = self.deadline.end(since_due, next_is_due);
+        if !self.in_time {
+            self.controller.fail(Fault::Deadline);
+        }
+        self.in_time
+    }
+
+    /// Does what the link asked for last, if anything.
+    fn obey(&mut self) {
+        // With no room for its outcome, an order waits; the link takes one before it gives another.
+        if self.ends.outcomes.ready()
+            && let Some(order) = self.ends.orders.dequeue()
+        {
+            let outcome = self.outcome(order);
+            let _there_is_room = self.ends.outcomes.enqueue(outcome);
+        }
+    }
+
+    fn outcome(&mut self, order: Order) -> Outcome {
+        match order {
+            Order::Load(place, driven) => {
+                if let Some(muscle) = self.muscles.get_mut(place) {
+                    *muscle = Some(driven);
+                }
+                Outcome::Done
+            }
+            Order::Rest(muscles) => {
+                self.muscles = muscles;
+                self.rows = 0;
+                // What waited belongs to the time before.
+                while self.ends.rows.dequeue().is_some() {}
+                self.requested = self.driven;
+                Outcome::Done
+            }
+            Order::Drive(stimuli) => {
+                self.driven = stimuli;
+                self.requested = stimuli;
+                Outcome::Done
+            }
+            Order::Readings(readings) => {
+                self.readings = readings;
+                Outcome::Done
+            }
+            Order::Acknowledge(fault) => armed(self.controller.acknowledge(fault)),
+            Order::Arm => armed(self.controller.arm()),
+            Order::Stop => {
+                self.controller.fail(Fault::Stopped);
+                Outcome::Done
+            }
+            Order::Report => Outcome::Report(Report {
+                state: self.controller.state(),
+                wrong: self.controller.wrong(),
+                ticks: self.ticks,
+                rows: self.rows,
+                longest_us: self.deadline.longest_us(),
+                late: self.deadline.late(),
+                // The link knows.
+                frames: Default::default(),
+            }),
+            Order::Words(place) => match self.muscles.get(place) {
+                Some(Some(driven)) => Outcome::Words(driven.words()),
+                _ => Outcome::Empty,
+            },
+        }
+    }
+
+    /// Steps the muscles by the next row, if there is one and its outputs can be taken.
+    fn advance(&mut self) {
+        if !self.ends.traces.ready() {
+            return;
+        }
+        let Some(row) = self.ends.rows.dequeue() else { return };
+        self.requested = self.driven;
+        let mut outputs = [RowOutputs::default(); MUSCLES];
+        for ((muscle, inputs), output) in self.muscles.iter_mut().zip(&row).zip(&mut outputs) {
+            let Some(driven) = muscle else { continue };
+            *output = driven.step(inputs);
+            if let Some((channel, stimulus)) = driven.stimulus(inputs)
+                && let Some(place) = self.requested.get_mut(channel)
+            {
+                *place = stimulus;
+            }
+        }
+        let _there_is_room = self.ends.traces.enqueue(Traced { row: self.rows, outputs });
+        self.rows = self.rows.wrapping_add(1);
+    }
+}
+
+fn armed(result: Result<(), NotArmed>) -> Outcome {
+    result.map_or_else(Outcome::NotArmed, |()| Outcome::Done)
+}

@@ -1,0 +1,138 @@
+//! A muscle in its place: what it is, where it is, and what stimulates it.
+
+use crate::device::TYPES;
+use crate::link::{Electrode, MOST_WORDS, Mode, Refusal, RowInputs, RowOutputs, Upload};
+use crate::safety::CHANNELS;
+use crate::stimulus::{Stimulus, within};
+use heapless::Vec;
+use vm_nostd::{
+    BankedMuscle, ContinuousMuscle, FesMuscle, Input, IntramuscularFes, NaturalContinuous,
+    RecruitmentCurve, State, TimeStep,
+};
+
+const _: () = assert!(State::<f32, NaturalContinuous, TYPES>::WORDS <= MOST_WORDS);
+const _: () = assert!(State::<f32, IntramuscularFes, TYPES>::WORDS <= MOST_WORDS);
+
+/// A muscle with its state, what stimulates it, and checksums of all of it as they were left.
+#[derive(Clone, Debug)]
+pub(crate) struct Driven {
+    muscle: BankedMuscle<f32, TYPES>,
+    electrode: Option<(Electrode, RecruitmentCurve<f32>)>,
+    checksums: [u32; 3],
+}
+
+impl Driven {
+    /// Builds a muscle at rest on the middle of its path, or refuses with field, value and limit.
+    pub(crate) fn build(upload: &Upload, step: TimeStep) -> Result<Self, Refusal<'static>> {
+        let electrode =
+            upload.electrode.map(|electrode| checked(upload.mode, electrode)).transpose()?;
+        let path_length = {
+            let (least, most) = upload.muscle.path_domain();
+            (0.5 * (least + most)) as f32
+        };
+        let muscle = match upload.mode {
+            Mode::Continuous => {
+                let muscle = ContinuousMuscle::build(&upload.muscle, step)?;
+                let state = muscle.rest(path_length)?;
+                BankedMuscle::Continuous(muscle, state)
+            }
+            Mode::Fes => {
+                let muscle = FesMuscle::build(&upload.muscle, step)?;
+                let state = muscle.rest(path_length)?;
+                BankedMuscle::Fes(muscle, state)
+            }
+        };
+        let mut driven = Self { muscle, electrode, checksums: [0; 3] };
+        driven.checksums = driven.sums();
+        Ok(driven)
+    }
+
+    /// The same at rest on a path (m), refused where the muscle cannot be.
+    pub(crate) fn at_rest(&self, path_length: f32) -> Result<Self, Refusal<'static>> {
+        let mut rested = self.clone();
+        match &mut rested.muscle {
+            BankedMuscle::Continuous(muscle, state) => *state = muscle.rest(path_length)?,
+            BankedMuscle::Fes(muscle, state) => *state = muscle.rest(path_length)?,
+        }
+        rested.checksums = rested.sums();
+        Ok(rested)
+    }
+
+    /// Whether memory still holds what was left in it.
+    pub(crate) fn is_intact(&self) -> bool {
+        self.sums() == self.checksums
+    }
+
+    /// A tick.
+    pub(crate) fn step(&mut self, inputs: &RowInputs) -> RowOutputs {
+        let output = self.muscle.step(Input {
+            activation: inputs.activation,
+            path_length: inputs.path_length,
+            stimulation_frequency: inputs.stimulation_frequency,
+        });
+        // Coefficients and curve are as they were, or this tick would hide what has happened to them.
+        self.checksums[1] = self.muscle.state_checksum();
+        RowOutputs {
+            force: output.force,
+            fascicle_length: output.fascicle_length,
+            fascicle_velocity: output.fascicle_velocity,
+            status: output.status.bits(),
+        }
+    }
+
+    /// The channel that stimulates it, and the pulses that an input asks of it: of the amplitude that recruits
+    /// as much as the input says, at its frequency.
+    pub(crate) fn stimulus(&self, inputs: &RowInputs) -> Option<(usize, Option<Stimulus>)> {
+        let (electrode, curve) = self.electrode.as_ref()?;
+        let (milliamperes, _) = curve.amplitude_for(inputs.activation, electrode.width_us.into());
+        // Saturating, and 0 for what is no number.
+        let frequency_tenths_pps = (inputs.stimulation_frequency * 10.0) as u16;
+        let stimulus = Stimulus {
+            amplitude_ua: (milliamperes * 1000.0) as u32,
+            width_us: electrode.width_us,
+            gap_us: electrode.gap_us,
+            frequency_tenths_pps,
+            recovery: electrode.recovery,
+        };
+        // Below a pulse a second there are none.
+        let stimulates = inputs.activation > 0.0 && frequency_tenths_pps >= 10;
+        Some((electrode.channel.into(), stimulates.then_some(stimulus)))
+    }
+
+    /// All words of the state.
+    pub(crate) fn words(&self) -> Vec<u32, MOST_WORDS> {
+        match &self.muscle {
+            BankedMuscle::Continuous(_, state) => state.words().take(MOST_WORDS).collect(),
+            BankedMuscle::Fes(_, state) => state.words().take(MOST_WORDS).collect(),
+        }
+    }
+
+    fn sums(&self) -> [u32; 3] {
+        let curve = self.electrode.as_ref().map_or(0, |(_, curve)| curve.checksum());
+        [self.muscle.coefficients_checksum(), self.muscle.state_checksum(), curve]
+    }
+}
+
+/// An electrode that a stimulator can have, with its curve.
+fn checked(
+    mode: Mode,
+    electrode: Electrode,
+) -> Result<(Electrode, RecruitmentCurve<f32>), Refusal<'static>> {
+    if mode != Mode::Fes {
+        // Natural recruitment is not to be stimulated as well.
+        let channel = electrode.channel.into();
+        return Err(Refusal::Number {
+            field: "electrode: only for FES",
+            value: channel,
+            least: 0,
+            most: 0,
+        });
+    }
+    within("electrode.channel", electrode.channel.into(), 0, CHANNELS as u32 - 1)?;
+    let curve = RecruitmentCurve::build(&electrode.curve)?;
+    // The rest as with any stimulus, of which amplitude and frequency come with each row.
+    let Electrode { width_us, gap_us, recovery, .. } = electrode;
+    Stimulus { amplitude_ua: 0, width_us, gap_us, frequency_tenths_pps: 10, recovery }
+        .validate_shape()?;
+    Ok((electrode, curve))
+}

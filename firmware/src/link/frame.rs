@@ -1,0 +1,98 @@
+//! Frames: where one ends, and whether it is whole.
+
+use crate::link::LinkError;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use heapless::Vec;
+use serde::Serialize;
+
+/// Of this format and its messages: other versions are refused.
+pub const VERSION: u8 = 1;
+/// Longest message, bytes.
+pub const MOST_CONTENT: usize = 1024;
+/// Version, and sequence number in little endian.
+const HEADER: usize = 3;
+/// CRC-32 of header and content, in little endian.
+const TRAILER: usize = 4;
+/// A whole frame before COBS.
+const MOST_WHOLE: usize = HEADER + MOST_CONTENT + TRAILER;
+/// Longest frame on the line, bytes: COBS adds one in 254, and there is the zero.
+pub const MOST_FRAME: usize = cobs::max_encoding_length(MOST_WHOLE) + 1;
+
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// A whole frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// Sequence number.
+    pub sequence: u16,
+    /// A message by postcard.
+    pub content: &'a [u8],
+}
+
+/// Makes a frame of a message, its zero included; none if the message is longer than [`MOST_CONTENT`].
+pub fn encode(sequence: u16, message: &impl Serialize) -> Option<Vec<u8, MOST_FRAME>> {
+    let mut whole = [0; MOST_WHOLE];
+    let (header, rest) = whole.split_at_mut(HEADER);
+    let [low, high] = sequence.to_le_bytes();
+    header.copy_from_slice(&[VERSION, low, high]);
+    let room = rest.get_mut(..MOST_CONTENT)?;
+    let length = HEADER + postcard::to_slice(message, room).ok()?.len();
+    let crc = CRC.checksum(whole.get(..length)?);
+    whole.get_mut(length..length + TRAILER)?.copy_from_slice(&crc.to_le_bytes());
+
+    let mut frame = Vec::new();
+    frame.resize(MOST_FRAME, 0).ok()?;
+    let encoded = cobs::try_encode(whole.get(..length + TRAILER)?, &mut frame).ok()?;
+    frame.truncate(encoded + 1);
+    Some(frame)
+}
+
+/// Collects the bytes of a line until a frame is whole.
+#[derive(Debug, Default)]
+pub struct Receiver {
+    bytes: Vec<u8, MOST_FRAME>,
+    /// The frame that was whole last is still in `bytes`.
+    taken: bool,
+    /// More bytes came than a frame has.
+    too_long: bool,
+}
+
+impl Receiver {
+    /// Nothing has arrived.
+    pub const fn new() -> Self {
+        Self { bytes: Vec::new(), taken: false, too_long: false }
+    }
+
+    /// Takes a byte. Where it ends a frame, that is what comes back, or why it is none.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Frame<'_>, LinkError>> {
+        if core::mem::take(&mut self.taken) {
+            self.bytes.clear();
+        }
+        if byte != 0 {
+            self.too_long |= self.bytes.push(byte).is_err();
+            return None;
+        }
+        self.taken = true;
+        if core::mem::take(&mut self.too_long) {
+            return Some(Err(LinkError::TooLong));
+        }
+        // Zeros between frames are no frames: a sender may begin with one to be sure.
+        if self.bytes.is_empty() { None } else { Some(whole(&mut self.bytes)) }
+    }
+}
+
+/// The frame in the bytes between two zeros.
+fn whole(bytes: &mut [u8]) -> Result<Frame<'_>, LinkError> {
+    let length = cobs::decode_in_place(bytes).map_err(|_| LinkError::Malformed)?;
+    let bytes = bytes.get(..length).ok_or(LinkError::Malformed)?;
+    let (covered, crc) = bytes.split_last_chunk::<TRAILER>().ok_or(LinkError::TooShort)?;
+    let (&[version, low, high], content) =
+        covered.split_first_chunk::<HEADER>().ok_or(LinkError::TooShort)?;
+    if u32::from_le_bytes(*crc) != CRC.checksum(covered) {
+        return Err(LinkError::Checksum);
+    }
+    if version != VERSION {
+        return Err(LinkError::Version { got: version, known: VERSION });
+    }
+    Ok(Frame { sequence: u16::from_le_bytes([low, high]), content })
+}

@@ -1,0 +1,117 @@
+//! Which frames are acted upon: each once, and in order.
+
+use crate::link::{Frame, Request};
+use serde::{Deserialize, Serialize};
+
+/// Why a frame was not acted upon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LinkError {
+    /// Longer than any frame.
+    TooLong,
+    /// Shorter than any frame: cut off.
+    TooShort,
+    /// Not COBS.
+    Malformed,
+    /// The checksum is another one.
+    Checksum,
+    /// Of another version of this protocol.
+    Version {
+        /// Its version.
+        got: u8,
+        /// The one that is known here.
+        known: u8,
+    },
+    /// No session: the first message of one is a greeting.
+    NoSession,
+    /// A frame that was acted upon before.
+    Replayed {
+        /// Its sequence number.
+        sequence: u16,
+    },
+    /// A frame is missing before this one.
+    OutOfOrder {
+        /// Its sequence number.
+        got: u16,
+        /// The one that is due.
+        due: u16,
+    },
+    /// Not a message, or more than one.
+    NotAMessage,
+}
+
+/// What became of frames since boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Acted upon.
+    pub accepted: u32,
+    /// [`LinkError::TooLong`], [`LinkError::TooShort`], [`LinkError::Malformed`], or a wrong checksum.
+    pub broken: u32,
+    /// Whole, and refused for version, sequence or message.
+    pub refused: u32,
+}
+
+/// The receiving end of a link.
+#[derive(Clone, Debug, Default)]
+pub struct Session {
+    /// Sequence number that is due, once there was a greeting.
+    due: Option<u16>,
+    counters: Counters,
+}
+
+impl Session {
+    /// No session yet.
+    pub const fn new() -> Self {
+        Self { due: None, counters: Counters { accepted: 0, broken: 0, refused: 0 } }
+    }
+
+    /// What became of frames so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// The request in what a [`Receiver`](crate::link::Receiver) gave, if it is to be acted upon.
+    ///
+    /// A greeting begins a session with any sequence number, but only where that `may_begin`.
+    pub fn admit(
+        &mut self,
+        received: Result<Frame<'_>, LinkError>,
+        may_begin: bool,
+    ) -> Result<Request, LinkError> {
+        let admitted = received.and_then(|frame| self.request(&frame, may_begin));
+        let Counters { accepted, broken, refused } = &mut self.counters;
+        let counter = match admitted {
+            Ok(_) => accepted,
+            Err(
+                LinkError::TooLong
+                | LinkError::TooShort
+                | LinkError::Malformed
+                | LinkError::Checksum,
+            ) => broken,
+            Err(_) => refused,
+        };
+        *counter = counter.saturating_add(1);
+        admitted
+    }
+
+    fn request(&mut self, frame: &Frame<'_>, may_begin: bool) -> Result<Request, LinkError> {
+        let parsed = match postcard::take_from_bytes::<Request>(frame.content) {
+            Ok((request, [])) => Ok(request),
+            _ => Err(LinkError::NotAMessage),
+        };
+        let got = frame.sequence;
+        let begins = may_begin && matches!(parsed, Ok(Request::Hello));
+        match self.due {
+            _ if begins => (),
+            None => return Err(LinkError::NoSession),
+            Some(due) if due == got => (),
+            // Half of all numbers are behind, the other half ahead.
+            Some(due) if got.wrapping_sub(due) >= 0x8000 => {
+                return Err(LinkError::Replayed { sequence: got });
+            }
+            Some(due) => return Err(LinkError::OutOfOrder { got, due }),
+        }
+        let request = parsed?;
+        self.due = Some(got.wrapping_add(1));
+        Ok(request)
+    }
+}

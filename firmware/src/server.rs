@@ -1,0 +1,270 @@
+//! The device's end of the link: below the tick, in no hurry.
+
+use crate::device::{LinkEnds, MUSCLES, Order, Outcome, Row, TYPES};
+use crate::driven::Driven;
+use crate::gate::Gate;
+use crate::link::{
+    Answer, Info, LinkError, MOST_FRAME, Message, Receiver, Refusal, Request, Session, Upload,
+    encode,
+};
+use crate::safety::CHANNELS;
+use crate::stimulus::within;
+use crate::storage::{MOST_STORED, Slots};
+use embedded_storage::nor_flash::NorFlash;
+use heapless::{Deque, Vec};
+use vm_nostd::TimeStep;
+
+/// What outlasts a loss of power.
+type Stored = [Option<Upload>; MUSCLES];
+
+/// For the outcome of an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Waiting {
+    /// There was none.
+    No,
+    /// The order at boot, which nobody has asked for.
+    Boot,
+    /// A request of that sequence number.
+    Request(u16),
+}
+
+/// Takes bytes, gives bytes, and tells the tick what it is to do.
+pub struct Server<'q, F> {
+    receiver: Receiver,
+    session: Session,
+    ends: LinkEnds<'q>,
+    gate: &'q Gate,
+    slots: Slots<F>,
+    step: TimeStep,
+    uploads: Stored,
+    /// As they were built.
+    built: [Option<Driven>; MUSCLES],
+    restored: u8,
+    waiting: Waiting,
+    /// Number of the row that is due.
+    row: u32,
+    sequence: u16,
+    /// Bytes for the host, an answer and a message of traces at most.
+    out: Deque<u8, { 2 * MOST_FRAME }>,
+}
+
+impl<'q, F: NorFlash> Server<'q, F> {
+    /// Takes over what is stored, and gives the tick the muscles that are whole and can be built.
+    pub fn new(ends: LinkEnds<'q>, gate: &'q Gate, memory: F, step: TimeStep) -> Self {
+        let mut server = Self {
+            receiver: Receiver::new(),
+            session: Session::new(),
+            ends,
+            gate,
+            slots: Slots::new(memory),
+            step,
+            uploads: [None; MUSCLES],
+            built: [const { None }; MUSCLES],
+            restored: 0,
+            waiting: Waiting::Boot,
+            row: 0,
+            sequence: 0,
+            out: Deque::new(),
+        };
+        let stored = server.slots.load().and_then(|stored| postcard::from_bytes(stored).ok());
+        server.uploads = stored.unwrap_or_default();
+        for (upload, built) in server.uploads.iter().zip(&mut server.built) {
+            *built = upload.as_ref().and_then(|upload| Driven::build(upload, step).ok());
+            server.restored += u8::from(built.is_some());
+        }
+        let _there_is_room = server.ends.orders.enqueue(Order::Rest(server.built.clone()));
+        server
+    }
+
+    /// Gives the memory back.
+    pub fn into_memory(self) -> F {
+        self.slots.into_memory()
+    }
+
+    /// Whether a byte can be taken: not before the request before it is answered.
+    pub fn is_ready(&self) -> bool {
+        self.waiting == Waiting::No && self.has_room()
+    }
+
+    /// Takes a byte from the line.
+    pub fn receive(&mut self, byte: u8) {
+        let may_begin = !self.gate.is_open();
+        let Some(received) = self.receiver.push(byte) else { return };
+        let sequence = received.map_or(0, |frame| frame.sequence);
+        match self.session.admit(received, may_begin) {
+            Err(error) => self.refuse_frame(error),
+            Ok(request) => {
+                self.gate.set_heard();
+                if let Some(answer) = self.act(sequence, request).transpose() {
+                    self.answer(sequence, &answer.unwrap_or_else(Answer::Refused));
+                }
+            }
+        }
+    }
+
+    /// Bytes were lost on the line, or arrived as none.
+    pub fn lost(&mut self) {
+        // What has begun is broken: its checksum will say so.
+        let _not_the_end = self.receiver.push(0xff);
+    }
+
+    /// Looks for what the tick has to say.
+    pub fn poll(&mut self) {
+        if let Some(outcome) = self.ends.outcomes.dequeue() {
+            if let Waiting::Request(to) = self.waiting {
+                let answer = self.of_outcome(outcome);
+                self.answer(to, &answer);
+            }
+            self.waiting = Waiting::No;
+        }
+        if self.has_room() && self.ends.traces.ready() {
+            let mut traces = Vec::new();
+            while !traces.is_full()
+                && let Some(traced) = self.ends.traces.dequeue()
+            {
+                let _there_is_room = traces.push(traced);
+            }
+            self.send(&Message::Traces(traces));
+        }
+    }
+
+    /// The next byte for the line.
+    pub fn transmit(&mut self) -> Option<u8> {
+        self.out.pop_front()
+    }
+
+    /// Nothing waits to be said or done.
+    pub fn is_idle(&self) -> bool {
+        self.out.is_empty() && self.waiting == Waiting::No && !self.ends.traces.ready()
+    }
+
+    /// For any frame.
+    fn has_room(&self) -> bool {
+        self.out.capacity() - self.out.len() >= MOST_FRAME
+    }
+
+    /// Does what a request asks for: the answer, or none where that comes from the tick.
+    fn act(
+        &mut self,
+        sequence: u16,
+        request: Request,
+    ) -> Result<Option<Answer<'static>>, Refusal<'static>> {
+        let order = match request {
+            Request::Hello => return Ok(Some(Answer::Info(self.info()))),
+            Request::Upload { place, upload } => self.upload(place, upload)?,
+            Request::Rest(paths) => self.rest(&paths)?,
+            Request::Rows { first, rows } => {
+                self.rows(first, &rows)?;
+                return Ok(Some(Answer::Done));
+            }
+            Request::KeepAlive => return Ok(Some(Answer::Done)),
+            Request::Drive(stimuli) => Order::Drive(stimuli),
+            Request::Readings(readings) => Order::Readings(readings),
+            Request::Acknowledge(fault) => Order::Acknowledge(fault),
+            Request::Arm => Order::Arm,
+            Request::Stop => Order::Stop,
+            Request::Report => Order::Report,
+            Request::State { place } => {
+                check_place(place)?;
+                Order::Words(place.into())
+            }
+        };
+        // There is room: the outcome of the order before was taken.
+        let _there_is_room = self.ends.orders.enqueue(order);
+        self.waiting = Waiting::Request(sequence);
+        Ok(None)
+    }
+
+    fn upload(&mut self, place: u8, upload: Upload) -> Result<Order, Refusal<'static>> {
+        self.only_disarmed()?;
+        check_place(place)?;
+        let driven = Driven::build(&upload, self.step)?;
+        let index = usize::from(place);
+        let mut uploads = self.uploads;
+        if let Some(slot) = uploads.get_mut(index) {
+            *slot = Some(upload);
+        }
+        let mut bytes = [0; MOST_STORED];
+        let bytes = postcard::to_slice(&uploads, &mut bytes).map_err(|_| Refusal::NotStored)?;
+        self.slots.store(bytes).map_err(|_| Refusal::NotStored)?;
+        self.uploads = uploads;
+        if let Some(slot) = self.built.get_mut(index) {
+            *slot = Some(driven.clone());
+        }
+        Ok(Order::Load(index, driven))
+    }
+
+    fn rest(&mut self, paths: &[Option<f32>; MUSCLES]) -> Result<Order, Refusal<'static>> {
+        self.only_disarmed()?;
+        let mut rested = [const { None }; MUSCLES];
+        for ((rested, built), &path) in rested.iter_mut().zip(&self.built).zip(paths) {
+            let Some(built) = built else { continue };
+            *rested = Some(path.map_or_else(|| Ok(built.clone()), |path| built.at_rest(path))?);
+        }
+        self.row = 0;
+        Ok(Order::Rest(rested))
+    }
+
+    fn rows(&mut self, first: u32, rows: &[Row]) -> Result<(), Refusal<'static>> {
+        within("first", first, self.row, self.row)?;
+        let room = self.ends.rows.capacity() - self.ends.rows.len();
+        if room < rows.len() {
+            // No more than a queue's length.
+            return Err(Refusal::NoRoom { room: room as u32 });
+        }
+        for &row in rows {
+            if self.ends.rows.enqueue(row).is_ok() {
+                self.row = self.row.wrapping_add(1);
+            }
+        }
+        Ok(())
+    }
+
+    fn only_disarmed(&self) -> Result<(), Refusal<'static>> {
+        if self.gate.is_open() { Err(Refusal::Armed) } else { Ok(()) }
+    }
+
+    fn info(&self) -> Info {
+        Info {
+            muscles: MUSCLES as u8,
+            types: TYPES as u8,
+            channels: CHANNELS as u8,
+            // A step is 2 ms at most.
+            tick_us: (self.step.seconds() * 1e6 + 0.5) as u32,
+            restored: self.restored,
+        }
+    }
+
+    fn of_outcome(&self, outcome: Outcome) -> Answer<'static> {
+        match outcome {
+            Outcome::Done => Answer::Done,
+            Outcome::NotArmed(reason) => Answer::Refused(Refusal::NotArmed(reason)),
+            Outcome::Report(mut report) => {
+                report.frames = self.session.counters();
+                Answer::Report(report)
+            }
+            Outcome::Words(words) => Answer::State(words),
+            Outcome::Empty => Answer::Refused(Refusal::Empty),
+        }
+    }
+
+    fn answer(&mut self, to: u16, answer: &Answer<'_>) {
+        self.send(&Message::Answer { to, answer: answer.clone() });
+    }
+
+    fn refuse_frame(&mut self, error: LinkError) {
+        self.send(&Message::NotActedUpon(error));
+    }
+
+    fn send(&mut self, message: &Message<'_>) {
+        let Some(frame) = encode(self.sequence, message) else { return };
+        self.sequence = self.sequence.wrapping_add(1);
+        for byte in frame {
+            let _there_is_room = self.out.push_back(byte);
+        }
+    }
+}
+
+fn check_place(place: u8) -> Result<(), Refusal<'static>> {
+    Ok(within("place", place.into(), 0, MUSCLES as u32 - 1)?)
+}

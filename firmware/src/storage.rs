@@ -1,0 +1,119 @@
+//! What has to outlast a loss of power: two slots, of which one is always whole.
+//!
+//! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases the slot that
+//! does not count, writes its content and then its header; only that makes it the newer one. Wherever power is
+//! lost, the slot that counted before still does.
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use embedded_storage::nor_flash::NorFlash;
+
+/// Longest content, bytes.
+pub const MOST_STORED: usize = 2048;
+const HEADER: usize = 16;
+const MAGIC: u32 = 0x4D53_4D56;
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// Memory did not take or keep it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotStored;
+
+/// A slot that is whole.
+#[derive(Clone, Copy, Debug)]
+struct Whole {
+    slot: u32,
+    generation: u32,
+    length: usize,
+}
+
+/// Two slots in a memory of two equal halves, each of whole pages of it.
+#[derive(Debug)]
+pub struct Slots<F> {
+    memory: F,
+    buffer: [u8; HEADER + MOST_STORED],
+}
+
+impl<F: NorFlash> Slots<F> {
+    /// Takes over a memory, as it is.
+    pub fn new(memory: F) -> Self {
+        Self { memory, buffer: [0; _] }
+    }
+
+    /// Gives the memory back.
+    pub fn into_memory(self) -> F {
+        self.memory
+    }
+
+    /// What was stored last, if anything.
+    pub fn load(&mut self) -> Option<&[u8]> {
+        let Whole { slot, length, .. } = self.newest()?;
+        // Both were in the buffer; it may hold the other one.
+        self.whole(slot)?;
+        self.buffer.get(HEADER..HEADER + length)
+    }
+
+    /// Stores a content; what was stored before counts until this is whole, and after an error still does.
+    pub fn store(&mut self, content: &[u8]) -> Result<(), NotStored> {
+        let newest = self.newest();
+        let (slot, generation) =
+            newest.map_or((0, 0), |newest| (1 - newest.slot, newest.generation.wrapping_add(1)));
+        let padded = content.len().next_multiple_of(F::WRITE_SIZE);
+        self.buffer.fill(0xff);
+        let place = self.buffer.get_mut(HEADER..HEADER + content.len()).ok_or(NotStored)?;
+        place.copy_from_slice(content);
+        // No longer than the buffer.
+        let length = content.len() as u32;
+        let fields = [MAGIC, generation, length];
+        for (place, field) in self.buffer.chunks_exact_mut(4).zip(fields) {
+            place.copy_from_slice(&field.to_le_bytes());
+        }
+        let crc = checksum(&self.buffer, content.len()).ok_or(NotStored)?;
+        self.buffer.get_mut(12..HEADER).ok_or(NotStored)?.copy_from_slice(&crc.to_le_bytes());
+
+        let start = slot * self.half();
+        self.memory.erase(start, start + self.half()).map_err(|_| NotStored)?;
+        let written = self.buffer.get(HEADER..HEADER + padded).ok_or(NotStored)?;
+        self.memory.write(start + HEADER as u32, written).map_err(|_| NotStored)?;
+        let header = self.buffer.get(..HEADER).ok_or(NotStored)?;
+        self.memory.write(start, header).map_err(|_| NotStored)?;
+
+        // Read again: a worn page may keep something else.
+        let kept = self.whole(slot).ok_or(NotStored)?;
+        let same = self.buffer.get(HEADER..HEADER + kept.length) == Some(content);
+        if kept.generation == generation && same { Ok(()) } else { Err(NotStored) }
+    }
+
+    fn half(&self) -> u32 {
+        // Addresses have 32 bits.
+        (self.memory.capacity() / 2) as u32
+    }
+
+    fn newest(&mut self) -> Option<Whole> {
+        match (self.whole(0), self.whole(1)) {
+            (Some(first), Some(second)) => {
+                // Generations go round.
+                let ahead = second.generation.wrapping_sub(first.generation);
+                Some(if ahead < 0x8000_0000 { second } else { first })
+            }
+            (first, second) => first.or(second),
+        }
+    }
+
+    /// Reads a slot into the buffer, and says what it holds if it is whole.
+    fn whole(&mut self, slot: u32) -> Option<Whole> {
+        self.memory.read(slot * self.half(), &mut self.buffer).ok()?;
+        let mut fields =
+            self.buffer.chunks_exact(4).map(|bytes| bytes.try_into().map_or(0, u32::from_le_bytes));
+        let (magic, generation) = (fields.next()?, fields.next()?);
+        let (length, crc) = (fields.next()? as usize, fields.next()?);
+        let whole = magic == MAGIC && checksum(&self.buffer, length) == Some(crc);
+        whole.then_some(Whole { slot, generation, length })
+    }
+}
+
+/// Of the header's first three fields and a content of so many bytes; none if that is too long.
+fn checksum(slot: &[u8], length: usize) -> Option<u32> {
+    let mut digest = CRC.digest();
+    digest.update(slot.get(..12)?);
+    digest.update(slot.get(HEADER..HEADER.checked_add(length)?)?);
+    Some(digest.finalize())
+}

@@ -1,0 +1,24 @@
+//! Hardware in the loop: a muscle on a device, its inputs and outputs over the link, and its bits against the
+//! host's.
+
+mod client;
+mod emulated;
+mod playback;
+
+pub use client::{Client, HilError, Line};
+pub use emulated::Emulated;
+pub use playback::{Played, play};
+
+use std::time::Duration;
+
+/// A line that reads nothing for so long says so.
+pub(crate) const PAUSE: Duration = Duration::from_millis(100);
+
+/// A serial port.
+pub fn serial(port: &str, baud: u32) -> Result<Client<Box<dyn serialport::SerialPort>>, HilError> {
+    let line = serialport::new(port, baud)
+        .timeout(PAUSE)
+        .open()
+        .map_err(|error| HilError::Port { port: port.to_owned(), message: error.to_string() })?;
+    Ok(Client::new(line))
+}

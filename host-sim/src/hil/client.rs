@@ -1,0 +1,256 @@
+//! The host's end of the link.
+
+use firmware::link::{
+    Answer, Frame, LinkError, Message, Receiver, Refusal, Request, Traced, encode,
+};
+use std::collections::VecDeque;
+use std::io::{ErrorKind, Read, Write};
+use std::time::{Duration, Instant};
+
+/// A line that carries bytes; where none come for a while, reading says so (`TimedOut` or `WouldBlock`).
+pub trait Line: Read + Write {}
+impl<L: Read + Write + ?Sized> Line for L {}
+
+/// Why the loop is not closed.
+#[derive(Debug, thiserror::Error)]
+pub enum HilError {
+    /// The port could not be opened.
+    #[error("--port {port}: {message}")]
+    Port {
+        /// Its name.
+        port: String,
+        /// What the system said.
+        message: String,
+    },
+    /// Nothing is built or emulated.
+    #[error(transparent)]
+    Target(#[from] crate::target::TargetError),
+    /// The line broke.
+    #[error("the line to the device: {0}")]
+    Line(#[from] std::io::Error),
+    /// Nobody answers.
+    #[error("the device does not answer to {request} within {PATIENCE:?}")]
+    Silence {
+        /// What was asked.
+        request: &'static str,
+    },
+    /// It was understood, and refused.
+    #[error("the device refuses {request}: {reason}")]
+    Refused {
+        /// What was asked.
+        request: &'static str,
+        /// Field, value and limit.
+        reason: String,
+        /// A device that has no room for rows, which passes.
+        no_room: bool,
+    },
+    /// It was not understood.
+    #[error("the device does not act upon {request}: {error:?}")]
+    NotActedUpon {
+        /// What was asked.
+        request: &'static str,
+        /// Why.
+        error: LinkError,
+    },
+    /// What came back answers something else.
+    #[error("the device's answer to {request} is of another kind")]
+    OtherAnswer {
+        /// What was asked.
+        request: &'static str,
+    },
+    /// The device is not one for this muscle or these inputs.
+    #[error("{what} = {value}: {limit}")]
+    Unfit {
+        /// Of what.
+        what: &'static str,
+        /// Which value.
+        value: String,
+        /// What it must be.
+        limit: String,
+    },
+    /// The host could not run the muscle itself.
+    #[error(transparent)]
+    Run(#[from] crate::engine::RunError),
+    /// The device computes something else.
+    #[error("{0}")]
+    Differs(String),
+}
+
+/// Longest wait for an answer: erasing a page of flash takes seconds.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// After so long without any byte, a request is sent again.
+const AGAIN: Duration = Duration::from_secs(5);
+
+/// Asks a device, one request at a time.
+pub struct Client<L> {
+    line: L,
+    receiver: Receiver,
+    sequence: u16,
+    /// What came between answers.
+    traces: VecDeque<Traced>,
+}
+
+/// What a device said, with nothing borrowed.
+enum Heard {
+    Answer(u16, Result<Answer<'static>, (String, bool)>),
+    NotActedUpon(LinkError),
+    Nothing,
+}
+
+impl<L: Line> Client<L> {
+    /// On a line.
+    pub fn new(line: L) -> Self {
+        Self { line, receiver: Receiver::new(), sequence: 0, traces: VecDeque::new() }
+    }
+
+    /// The line.
+    pub fn line(&mut self) -> &mut L {
+        &mut self.line
+    }
+
+    /// The line, without the client.
+    pub fn into_line(self) -> L {
+        self.line
+    }
+
+    /// What rows have led to, if that has come.
+    pub fn next_trace(&mut self) -> Option<Traced> {
+        self.traces.pop_front()
+    }
+
+    /// Reads what comes within a moment.
+    pub fn listen(&mut self) -> Result<(), HilError> {
+        self.hear().map(|_| ())
+    }
+
+    /// Sends bytes that need not be a frame.
+    pub fn send_raw(&mut self, bytes: &[u8]) -> Result<(), HilError> {
+        self.line.write_all(bytes)?;
+        Ok(self.line.flush()?)
+    }
+
+    /// Sends a request, again if it was broken on its way, and waits for its answer.
+    pub fn ask(&mut self, request: &Request) -> Result<Answer<'static>, HilError> {
+        let name = name(request);
+        let sequence = self.sequence;
+        let Some(frame) = encode(sequence, request) else {
+            let limit = "must fit into a frame".to_owned();
+            return Err(HilError::Unfit { what: "request", value: name.to_owned(), limit });
+        };
+        self.sequence = sequence.wrapping_add(1);
+        self.send_raw(&frame)?;
+        let (started, mut sent) = (Instant::now(), Instant::now());
+        while started.elapsed() < PATIENCE {
+            match self.hear()? {
+                Heard::Answer(to, answer) if to == sequence => {
+                    return answer.map_err(|(reason, no_room)| HilError::Refused {
+                        request: name,
+                        reason,
+                        no_room,
+                    });
+                }
+                // To a request that was sent twice.
+                Heard::Answer(..) => (),
+                Heard::NotActedUpon(LinkError::Replayed { sequence: old }) if old != sequence => (),
+                Heard::NotActedUpon(
+                    LinkError::Checksum
+                    | LinkError::Malformed
+                    | LinkError::TooLong
+                    | LinkError::TooShort,
+                ) => {
+                    self.send_raw(&frame)?;
+                    sent = Instant::now();
+                }
+                Heard::NotActedUpon(error) => {
+                    return Err(HilError::NotActedUpon { request: name, error });
+                }
+                Heard::Nothing if sent.elapsed() > AGAIN => {
+                    self.send_raw(&frame)?;
+                    sent = Instant::now();
+                }
+                Heard::Nothing => (),
+            }
+        }
+        Err(HilError::Silence { request: name })
+    }
+
+    /// The same where there is nothing to be said but that it was done.
+    pub fn order(&mut self, request: &Request) -> Result<(), HilError> {
+        match self.ask(request)? {
+            Answer::Done => Ok(()),
+            _ => Err(HilError::OtherAnswer { request: name(request) }),
+        }
+    }
+
+    /// The next message that is no trace, or nothing where nothing comes for a moment.
+    fn hear(&mut self) -> Result<Heard, HilError> {
+        let mut byte = [0];
+        loop {
+            match self.line.read(&mut byte) {
+                Ok(0) => return Err(std::io::Error::from(ErrorKind::UnexpectedEof).into()),
+                Ok(_) => (),
+                Err(error)
+                    if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) =>
+                {
+                    return Ok(Heard::Nothing);
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error.into()),
+            }
+            // What is broken on its way here is asked for again after a while.
+            let Some(Ok(Frame { content, .. })) = self.receiver.push(byte[0]) else { continue };
+            match postcard::from_bytes::<Message<'_>>(content) {
+                Ok(Message::Answer { to, answer }) => return Ok(Heard::Answer(to, owned(answer))),
+                Ok(Message::NotActedUpon(error)) => return Ok(Heard::NotActedUpon(error)),
+                Ok(Message::Traces(traces)) => self.traces.extend(traces),
+                Err(_) => (),
+            }
+        }
+    }
+}
+
+fn owned(answer: Answer<'_>) -> Result<Answer<'static>, (String, bool)> {
+    Ok(match answer {
+        Answer::Done => Answer::Done,
+        Answer::Info(info) => Answer::Info(info),
+        Answer::Report(report) => Answer::Report(report),
+        Answer::State(words) => Answer::State(words),
+        Answer::Refused(refusal) => {
+            return Err((reason(&refusal), matches!(refusal, Refusal::NoRoom { .. })));
+        }
+    })
+}
+
+fn reason(refusal: &Refusal<'_>) -> String {
+    match refusal {
+        Refusal::Parameter { field, fiber, value, limit } => {
+            let fiber = fiber.map_or_else(String::new, |index| format!("fibers[{index}]."));
+            format!("{fiber}{field} = {value}: {limit}")
+        }
+        Refusal::Number { field, value, least, most } => {
+            format!("{field} = {value}: must be {least} to {most}")
+        }
+        Refusal::Armed => "stimulation is armed".to_owned(),
+        Refusal::Empty => "no muscle is at that place".to_owned(),
+        Refusal::NoRoom { room } => format!("room for {room} rows"),
+        Refusal::NotStored => "memory did not keep it; what was stored before still is".to_owned(),
+        Refusal::NotArmed(reason) => format!("{reason:?}"),
+    }
+}
+
+fn name(request: &Request) -> &'static str {
+    match request {
+        Request::Hello => "hello",
+        Request::KeepAlive => "keep alive",
+        Request::Upload { .. } => "the upload of a muscle",
+        Request::Rest(_) => "rest",
+        Request::Rows { .. } => "rows",
+        Request::Drive(_) => "drive",
+        Request::Readings(_) => "readings",
+        Request::Acknowledge(_) => "acknowledge",
+        Request::Arm => "arm",
+        Request::Stop => "stop",
+        Request::Report => "report",
+        Request::State { .. } => "state",
+    }
+}

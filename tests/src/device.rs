@@ -1,0 +1,131 @@
+//! The whole firmware but its chip, in this process: a line for the host's end of the link.
+
+use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
+use embedded_storage::nor_flash::NorFlash;
+use firmware::safety::{CHANNELS, Fault, Limits};
+use firmware::{Controller, Deadline, Device, Gate, Lines, Plan, Pulses, RamFlash, Server};
+use heapless::spsc::Queue;
+use std::collections::VecDeque;
+use std::io::{Error, ErrorKind, Read, Result, Write};
+use vm_nostd::TimeStep;
+
+/// Memory for two slots.
+pub type Memory = RamFlash<8192>;
+/// A tick, µs; the timer that calls for ticks counts these.
+const TICK: u32 = 1000;
+/// A host that hears nothing for so many ticks is told so.
+const PATIENCE: u32 = 300;
+
+/// A device and the time. It only passes while the host reads.
+pub struct InProcess<F> {
+    server: Server<'static, F>,
+    device: Device<'static>,
+    pulses: Pulses<'static, Converter, Pin>,
+    /// What it does to a patient.
+    pub electrodes: Shared,
+    /// Bytes on their way to the device.
+    arriving: VecDeque<u8>,
+    ticks: u32,
+    timer: u32,
+    step_us: u32,
+    /// The most counts at the electrodes since it was asked for.
+    flowed: u16,
+}
+
+impl<F: NorFlash> InProcess<F> {
+    /// At boot, with what its memory holds.
+    pub fn boot(memory: F) -> Self {
+        Self::boot_with(memory, Limits::SURFACE)
+    }
+
+    /// The same with other limits.
+    pub fn boot_with(memory: F, limits: Limits) -> Self {
+        let (stage, electrodes) = stage();
+        // As statics of a firmware are.
+        let plans: &'static mut Queue<Plan<CHANNELS>, 4> = Box::leak(Box::default());
+        let gate: &'static Gate = Box::leak(Box::default());
+        let lines: &'static mut Lines = Box::leak(Box::default());
+        let (give, take) = plans.split();
+        let (tick_ends, link_ends) = lines.split();
+        let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate);
+        Self {
+            server: Server::new(link_ends, gate, memory, TimeStep::MILLISECOND),
+            device: Device::new(controller, tick_ends, Deadline::new(TICK, 1)),
+            pulses: Pulses::new(stage, take, gate, TICK),
+            electrodes,
+            arriving: VecDeque::new(),
+            ticks: 0,
+            timer: 0,
+            step_us: Pulses::<Converter, Pin>::FIRST_US,
+            flowed: 0,
+        }
+    }
+
+    /// A tick, and all that pulse timer and link do until the next one.
+    pub fn tick(&mut self) {
+        if !self.device.tick(0) || !self.device.finish(100, false) {
+            self.pulses.attend();
+        }
+        self.ticks += 1;
+        self.see();
+        while self.timer < self.ticks * TICK {
+            self.timer += self.step_us;
+            self.step_us = self.pulses.timer();
+            self.see();
+        }
+        self.server.poll();
+        while self.server.is_ready()
+            && let Some(byte) = self.arriving.pop_front()
+        {
+            self.server.receive(byte);
+        }
+    }
+
+    fn see(&mut self) {
+        let electrodes = self.electrodes.borrow();
+        assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);
+        if electrodes.cathodic || electrodes.anodic {
+            self.flowed = self.flowed.max(electrodes.counts);
+        }
+    }
+
+    /// The most counts that have flowed since this was asked last.
+    pub fn flowed(&mut self) -> u16 {
+        std::mem::take(&mut self.flowed)
+    }
+
+    /// The power fails; what is left is the memory.
+    pub fn into_memory(self) -> F {
+        self.server.into_memory()
+    }
+}
+
+impl<F: NorFlash> Read for InProcess<F> {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize> {
+        for _ in 0..PATIENCE {
+            let mut length = 0;
+            while length < bytes.len()
+                && let Some(byte) = self.server.transmit()
+            {
+                bytes[length] = byte;
+                length += 1;
+            }
+            if length > 0 {
+                return Ok(length);
+            }
+            self.tick();
+        }
+        Err(Error::from(ErrorKind::TimedOut))
+    }
+}
+
+impl<F: NorFlash> Write for InProcess<F> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
+        self.arriving.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
