@@ -26,5 +26,8 @@ fn main() {
             println!("cargo::rustc-link-arg-bins=--defsym=_stack_start=0x20004000");
         }
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
+        if env::var_os("CARGO_FEATURE_BOARD_STM32F405").is_some() {
+            println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+        }
     }
 }

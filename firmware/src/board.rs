@@ -1,19 +1,372 @@
-//! The chip: STM32F405, as QEMU's netduinoplus2 has it. No other file names one.
+//! The chip and its pins: an STM32F405. No other file names one.
+//!
+//! | what | where |
+//! |---|---|
+//! | converter (MCP4921's kind) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
+//! | bridge | cathodic PB0, anodic PB1 |
+//! | channels | PC0, PC1, PC2, PC3 |
+//! | link | USART1: TX PA9, RX PA10, 115,200 Bd |
+//! | pulse timer, tick | TIM2, SysTick |
+//! | crystal | 8 MHz |
+//! | stored muscles | the last two sectors of flash, 128 KiB each |
+//!
+//! The same image runs in QEMU, whose chip has no clock control: [`is_emulated`] tells them apart.
 
-use cortex_m::Peripherals;
+use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
+use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+use firmware::safety::{CHANNELS, Fault};
+use firmware::{Bridge, OutputStage, Pulses, RamFlash, Scale};
+use stm32f4xx_hal::flash::{FlashExt, LockedFlash};
+use stm32f4xx_hal::gpio::{ErasedPin, Output, PushPull, Speed};
+use stm32f4xx_hal::nb;
+pub use stm32f4xx_hal::pac;
+use stm32f4xx_hal::pac::{IWDG, RCC, SPI1, TIM2, USART1};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::{self, Rcc};
+use stm32f4xx_hal::serial::{Config, Rx, Serial, Tx};
+use stm32f4xx_hal::spi::{self, Spi};
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-/// Core clock of the emulated part, Hz. (A real one starts at 16 MHz, until its PLL is set.)
+/// A pin that is driven.
+pub type Pin = ErasedPin<Output<PushPull>>;
+/// The converter.
+pub type Converter = ExclusiveDevice<Spi<SPI1>, Pin, NoDelay>;
+/// The output stage.
+pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
+
+/// Current source: 50 mA at the converter's 4095.
+pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
+/// Of the link. A byte takes longer than a tick of two muscles, which runs above it: none is lost.
+const BAUD: u32 = 115_200;
+
+/// Core clock of the part, and of the emulator's, Hz.
 const CORE_CLOCK: u32 = 168_000_000;
-/// Ticks per second.
-const TICK_RATE: u32 = 1_000;
+/// The emulator's TIM2 counts ns.
+const EMULATED_TIMER_CLOCK: u32 = 1_000_000_000;
 
-/// Starts the tick interrupt.
-pub fn start_tick(peripherals: Peripherals) {
-    let mut timer = peripherals.SYST;
-    timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(CORE_CLOCK / TICK_RATE - 1);
-    timer.clear_current();
-    timer.enable_counter();
-    timer.enable_interrupt();
+/// All that the firmware runs on, in neutral.
+pub struct Board {
+    /// In neutral; none if it does not answer.
+    pub stage: Option<Stage>,
+    /// Stopped.
+    pub pulse_timer: PulseTimer,
+    /// Stopped.
+    pub tick_timer: TickTimer,
+    /// Stopped.
+    pub watchdog: Watchdog,
+    /// To the host.
+    pub to_host: ToHost,
+    /// From the host.
+    pub from_host: FromHost,
+    /// For what outlasts a loss of power.
+    pub memory: Memory,
+    /// Why it boots.
+    pub boot: Fault,
+}
+
+/// Whether this is an emulator: its reset and clock control reads 0, where any real part says that the oscillator
+/// it starts from is ready.
+fn is_emulated(rcc: &RCC) -> bool {
+    rcc.cr().read().hsirdy().bit_is_clear()
+}
+
+impl Board {
+    /// Outputs first, then everything else; ticks of so many µs.
+    pub fn start(core: cortex_m::Peripherals, device: pac::Peripherals, tick_us: u32) -> Self {
+        let is_emulated = is_emulated(&device.RCC);
+        let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
+        device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
+        let mut rcc = if is_emulated {
+            device.RCC.constrain()
+        } else {
+            device.RCC.freeze(rcc::Config::hse(8.MHz()).sysclk(CORE_CLOCK.Hz()))
+        };
+
+        let a = device.GPIOA.split(&mut rcc);
+        let b = device.GPIOB.split(&mut rcc);
+        let c = device.GPIOC.split(&mut rcc);
+        // Low from the moment they are outputs; until then, resistors of the board keep them so.
+        let bridge = Bridge {
+            cathodic: b.pb0.into_push_pull_output().erase(),
+            anodic: b.pb1.into_push_pull_output().erase(),
+        };
+        let channels = [
+            c.pc0.into_push_pull_output().erase(),
+            c.pc1.into_push_pull_output().erase(),
+            c.pc2.into_push_pull_output().erase(),
+            c.pc3.into_push_pull_output().erase(),
+        ];
+        let mut select: Pin = a.pa4.into_push_pull_output().erase();
+        select.set_high();
+        let clock = a.pa5.into_alternate().speed(Speed::High);
+        let data = a.pa7.into_alternate().speed(Speed::High);
+        let mode = spi::Mode {
+            polarity: spi::Polarity::IdleLow,
+            phase: spi::Phase::CaptureOnFirstTransition,
+        };
+        let nothing = None::<stm32f4xx_hal::gpio::Pin<'A', 6>>;
+        let bus =
+            Spi::new(device.SPI1, (Some(clock), nothing, Some(data)), mode, 10.MHz(), &mut rcc);
+        let stage = ExclusiveDevice::new_no_delay(bus, select)
+            .ok()
+            .and_then(|converter| OutputStage::new(converter, bridge, channels).ok());
+
+        let serial = Serial::new(
+            device.USART1,
+            (a.pa9, a.pa10),
+            Config::default().baudrate(BAUD.bps()),
+            &mut rcc,
+        );
+        // Refused only for a rate that this clock cannot make; the watchdog is not fed then, and nothing runs.
+        let (to_host, mut from_host) = serial.map_or_else(|_| reset(), Serial::split);
+        from_host.listen();
+
+        Self {
+            stage,
+            pulse_timer: PulseTimer::new(device.TIM2, &mut rcc, is_emulated),
+            tick_timer: TickTimer::new(core.SYST, tick_us),
+            watchdog: Watchdog::new(device.IWDG),
+            to_host: ToHost(to_host),
+            from_host: FromHost(from_host),
+            memory: if is_emulated {
+                Memory::Ram(RamFlash::new())
+            } else {
+                Memory::Flash(LockedFlash::new(device.FLASH))
+            },
+            boot: if watchdog_reset { Fault::Watchdog } else { Fault::Boot },
+        }
+    }
+}
+
+/// What the serial port got.
+#[derive(Clone, Copy)]
+pub enum Received {
+    /// A byte.
+    Byte(u8),
+    /// One was lost, or came as none.
+    Lost,
+}
+
+/// The serial port's receiver.
+pub struct FromHost(Rx<USART1>);
+
+impl FromHost {
+    /// What has come, if anything.
+    pub fn read(&mut self) -> Option<Received> {
+        match self.0.read() {
+            Ok(byte) => Some(Received::Byte(byte)),
+            Err(nb::Error::Other(_)) => Some(Received::Lost),
+            Err(nb::Error::WouldBlock) => None,
+        }
+    }
+}
+
+/// The serial port's transmitter.
+pub struct ToHost(Tx<USART1>);
+
+impl ToHost {
+    /// Whether a byte can be given.
+    pub fn is_ready(&self) -> bool {
+        self.0.is_tx_empty()
+    }
+
+    /// Gives it a byte.
+    pub fn write(&mut self, byte: u8) {
+        let _it_was_ready = self.0.write(byte);
+    }
+}
+
+/// Starts again: everything is off at boot.
+pub fn reset() -> ! {
+    cortex_m::peripheral::SCB::sys_reset()
+}
+
+/// The timer that says when a step of the schedule ends.
+///
+/// Its reload is buffered: what is written during a step counts from its end on, so that no interrupt's delay
+/// changes how long a phase lasts.
+pub struct PulseTimer {
+    timer: TIM2,
+    is_emulated: bool,
+}
+
+impl PulseTimer {
+    fn new(timer: TIM2, rcc: &mut Rcc, is_emulated: bool) -> Self {
+        use rcc::{Enable, Reset};
+        TIM2::enable(rcc);
+        TIM2::reset(rcc);
+        let clock = if is_emulated { EMULATED_TIMER_CLOCK } else { rcc.clocks.timclk1().raw() };
+        let count = timer.cnt().read().cnt().bits();
+        // Counts µs; 16 bits are enough for either.
+        timer.psc().write(|w| w.psc().set((clock / 1_000_000 - 1) as u16));
+        if is_emulated {
+            // To every alarm, QEMU's adds the time at which its count was 0. That stays the time of reset if the
+            // count goes on from the ns there were before.
+            timer.cnt().write(|w| w.cnt().set(count / 1000));
+        }
+        timer.arr().write(|w| w.arr().set(Pulses::<Converter, Pin>::FIRST_US - 1));
+        timer.cr1().modify(|_, w| w.arpe().set_bit());
+        timer.dier().modify(|_, w| w.uie().set_bit());
+        Self { timer, is_emulated }
+    }
+
+    /// Starts with the first step.
+    pub fn start(&mut self) {
+        if !self.is_emulated {
+            // Takes over prescaler and reload, which are buffered.
+            self.timer.egr().write(|w| w.ug().set_bit());
+        }
+        self.timer.sr().modify(|_, w| w.uif().clear_bit());
+        self.timer.cr1().modify(|_, w| w.cen().set_bit());
+        // The emulator's alarm may have gone by before anything listened.
+        self.set_next(Pulses::<Converter, Pin>::FIRST_US);
+    }
+
+    /// Whether it has run out since this was asked last.
+    pub fn has_run_out(&mut self) -> bool {
+        let has = self.timer.sr().read().uif().bit_is_set();
+        if has {
+            self.timer.sr().modify(|_, w| w.uif().clear_bit());
+        }
+        has
+    }
+
+    /// How long the step after this one lasts, µs.
+    pub fn set_next(&mut self, duration_us: u32) {
+        self.timer.arr().write(|w| w.arr().set(duration_us.saturating_sub(1)));
+    }
+}
+
+/// The timer that calls for ticks: counts the core's clock down.
+pub struct TickTimer {
+    timer: SYST,
+    reload: u32,
+}
+
+impl TickTimer {
+    /// Counts in a µs.
+    pub const COUNTS_PER_US: u32 = CORE_CLOCK / 1_000_000;
+
+    fn new(mut timer: SYST, tick_us: u32) -> Self {
+        let reload = tick_us * Self::COUNTS_PER_US - 1;
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(reload);
+        timer.clear_current();
+        Self { timer, reload }
+    }
+
+    /// Starts; the first tick comes after a whole period.
+    pub fn start(&mut self) {
+        self.timer.enable_counter();
+        self.timer.enable_interrupt();
+    }
+
+    /// Counts since a tick was due last.
+    pub fn since_due(&self) -> u32 {
+        self.reload.saturating_sub(SYST::get_current())
+    }
+
+    /// Whether one was due since this was asked last.
+    pub fn was_due(&mut self) -> bool {
+        self.timer.has_wrapped()
+    }
+}
+
+/// Restarts the chip when ticks stop coming.
+pub struct Watchdog {
+    watchdog: IndependentWatchdog,
+    armed: Option<bool>,
+}
+
+/// While current may flow, and otherwise: erasing flash holds the core up for seconds.
+const PATIENCE_ARMED_MS: u32 = 50;
+const PATIENCE_MS: u32 = 8_000;
+
+impl Watchdog {
+    fn new(watchdog: IWDG) -> Self {
+        Self { watchdog: IndependentWatchdog::new(watchdog), armed: None }
+    }
+
+    /// A tick has ended in time.
+    pub fn feed(&mut self, armed: bool) {
+        if self.armed.replace(armed) == Some(armed) {
+            self.watchdog.feed();
+        } else {
+            self.watchdog.start(if armed { PATIENCE_ARMED_MS } else { PATIENCE_MS }.millis());
+        }
+    }
+}
+
+/// Where the last two sectors of flash begin; `memory.x` keeps the program out of them.
+const STORAGE: u32 = 768 * 1024;
+const STORAGE_BYTES: usize = 256 * 1024;
+const SECTOR: usize = STORAGE_BYTES / 2;
+
+/// What outlasts a loss of power; in an emulator, only for as long as that runs.
+// One of them is only there in an emulator, which has memory enough.
+#[allow(clippy::large_enum_variant)]
+pub enum Memory {
+    /// Two sectors.
+    Flash(LockedFlash),
+    /// The same in small.
+    Ram(RamFlash<8192>),
+}
+
+/// Memory did not do what it was to.
+#[derive(Debug)]
+pub struct MemoryError;
+
+impl NorFlashError for MemoryError {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+impl ErrorType for Memory {
+    type Error = MemoryError;
+}
+
+impl ReadNorFlash for Memory {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), MemoryError> {
+        match self {
+            Self::Flash(flash) => flash.read(STORAGE + offset, bytes).map_err(|_| MemoryError),
+            Self::Ram(ram) => ram.read(offset, bytes).map_err(|_| MemoryError),
+        }
+    }
+
+    fn capacity(&self) -> usize {
+        match self {
+            Self::Flash(_) => STORAGE_BYTES,
+            Self::Ram(ram) => ram.capacity(),
+        }
+    }
+}
+
+impl NorFlash for Memory {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = SECTOR;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), MemoryError> {
+        match self {
+            Self::Flash(flash) => {
+                NorFlash::erase(&mut flash.unlocked(), STORAGE + from, STORAGE + to)
+                    .map_err(|_| MemoryError)
+            }
+            Self::Ram(ram) => ram.erase(from, to).map_err(|_| MemoryError),
+        }
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), MemoryError> {
+        match self {
+            Self::Flash(flash) => NorFlash::write(&mut flash.unlocked(), STORAGE + offset, bytes)
+                .map_err(|_| MemoryError),
+            Self::Ram(ram) => ram.write(offset, bytes).map_err(|_| MemoryError),
+        }
+    }
 }

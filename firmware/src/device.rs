@@ -9,6 +9,16 @@ use crate::stimulus::Stimulus;
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 
+/// Time between ticks of the firmware, µs: 500 to 2,000. 1,000, or what `VM_TICK_US` says when it is built.
+pub const TICK_US: u32 = match option_env!("VM_TICK_US") {
+    None => 1000,
+    Some(text) => match u32::from_str_radix(text, 10) {
+        Ok(tick_us) => tick_us,
+        Err(_) => panic!("VM_TICK_US: must be a whole number"),
+    },
+};
+const _: () = assert!(TICK_US >= 500 && TICK_US <= 2000, "VM_TICK_US: must be 500 to 2000");
+
 /// Muscles of a device.
 pub const MUSCLES: usize = 2;
 /// Fibre types of each muscle.

@@ -32,7 +32,7 @@ mod waveform;
 
 pub use controller::Controller;
 pub use deadline::Deadline;
-pub use device::{Device, Lines, LinkEnds, MUSCLES, TYPES, TickEnds};
+pub use device::{Device, Lines, LinkEnds, MUSCLES, TICK_US, TYPES, TickEnds};
 pub use gate::Gate;
 pub use output::{Bridge, OutputError, OutputStage};
 pub use plan::Plan;

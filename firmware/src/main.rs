@@ -1,99 +1,166 @@
-//! The firmware: a 1 kHz SysTick interrupt steps two muscles through the compiled-in scenario,
-//! and the bits of every tick leave through semihosting, little-endian frames on standard
-//! output.
+//! The stimulator: three levels, each of which interrupts the ones below and waits for none.
+//!
+//! | priority | task | by |
+//! |---:|---|---|
+//! | 3 | pulses | the pulse timer |
+//! | 2 | muscles and supervision | the tick |
+//! | 1 | bytes from the host | the serial port |
+//! | 0 | link, storage, log | what time is left |
 #![no_std]
 #![no_main]
 
 mod board;
 
-use core::cell::RefCell;
-use core::sync::atomic::{AtomicBool, Ordering};
-use cortex_m_rt::{entry, exception};
-use cortex_m_semihosting::hio;
-use critical_section::Mutex;
-use firmware::{Record, Rig, Scenario, TICKS, end, frame_words};
-use heapless::spsc::{Consumer, Producer, Queue};
+#[rtic::app(device = crate::board::pac, peripherals = true)]
+mod app {
+    use crate::board::{
+        self, Board, Converter, FromHost, Memory, Pin, PulseTimer, Received, SCALE, TickTimer,
+        ToHost, Watchdog, pac,
+    };
+    use defmt_rtt as _;
+    use firmware::safety::{CHANNELS, Limits};
+    use firmware::{Controller, Deadline, Device, Gate, Lines, Plan, Pulses, Server, TICK_US};
+    use heapless::spsc::{Consumer, Producer, Queue};
+    use vm_nostd::TimeStep;
 
-/// All bits that a tick leaves.
-type Frame = [u32; frame_words::<f32>()];
+    /// Bytes that can wait for the link.
+    const WAITING: usize = 1024;
 
-/// Frames that can wait between the tick and the host: the tick itself never waits.
-const WAITING: usize = 64;
+    #[shared]
+    struct Shared {}
 
-/// Hands the tick's own half over to the interrupt, once.
-static HANDOVER: Mutex<RefCell<Option<Tick>>> = Mutex::new(RefCell::new(None));
-
-/// What the interrupt owns.
-struct Tick {
-    rig: Rig<f32>,
-    outlet: Outlet,
-}
-
-/// A frame found the queue full. The run is then worthless, and ends with a failure.
-static LOST: AtomicBool = AtomicBool::new(false);
-
-/// The producing end of the queue.
-struct Outlet(Producer<'static, Frame>);
-
-impl Record for Outlet {
-    fn record(&mut self, words: impl Iterator<Item = u32>) {
-        let mut frame: Frame = [0; _];
-        frame.iter_mut().zip(words).for_each(|(place, word)| *place = word);
-        if self.0.enqueue(frame).is_err() {
-            LOST.store(true, Ordering::Relaxed);
-        }
+    #[local]
+    struct Local {
+        pulses: Pulses<'static, Converter, Pin>,
+        pulse_timer: PulseTimer,
+        device: Device<'static>,
+        tick_timer: TickTimer,
+        watchdog: Watchdog,
+        from_host: FromHost,
+        received: Producer<'static, Received>,
+        arrived: Consumer<'static, Received>,
+        to_host: ToHost,
+        server: Server<'static, Memory>,
     }
-}
 
-#[entry]
-fn main() -> ! {
-    static mut QUEUE: Queue<Frame, WAITING> = Queue::new();
-    let (producer, consumer) = QUEUE.split();
-    let ready = Rig::at_rest(Scenario::RESTING_PATH).ok().zip(cortex_m::Peripherals::take());
-    let Some((rig, peripherals)) = ready else { end::finish(false) };
-    let tick = Tick { rig, outlet: Outlet(producer) };
-    critical_section::with(|cs| HANDOVER.replace(cs, Some(tick)));
-    board::start_tick(peripherals);
-    end::finish(report(consumer).is_ok())
-}
-
-/// Sends every frame of the scenario to the host.
-fn report(mut frames: Consumer<'static, Frame>) -> Result<(), ()> {
-    let mut host = hio::hstdout()?;
-    let mut sent = 0;
-    while sent < TICKS {
-        if LOST.load(Ordering::Relaxed) {
-            return Err(());
-        }
-        let Some(frame) = frames.dequeue() else {
-            cortex_m::asm::wfi();
-            continue;
+    /// Outputs are neutral before anything else is done.
+    #[init(local = [
+        gate: Gate = Gate::new(),
+        plans: Queue<Plan<CHANNELS>, 8> = Queue::new(),
+        lines: Lines = Lines::new(),
+        bytes: Queue<Received, WAITING> = Queue::new(),
+    ])]
+    fn init(context: init::Context) -> (Shared, Local) {
+        let Board {
+            stage,
+            mut pulse_timer,
+            mut tick_timer,
+            watchdog,
+            to_host,
+            from_host,
+            memory,
+            boot,
+        } = Board::start(context.core, context.device, TICK_US);
+        let init::LocalResources { gate, plans, lines, bytes, .. } = context.local;
+        // Without an output stage that answers there is nothing to do; it may after a restart.
+        let Some(stage) = stage else { board::reset() };
+        let Ok(step) = TimeStep::from_seconds(f64::from(TICK_US) * 1e-6) else { board::reset() };
+        let gate: &'static Gate = gate;
+        let (give_plan, take_plan) = plans.split();
+        let (tick_ends, link_ends) = lines.split();
+        let (received, arrived) = bytes.split();
+        let controller = Controller::new(Limits::SURFACE, TICK_US, boot, SCALE, give_plan, gate);
+        let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
+        let server = Server::new(link_ends, gate, memory, step);
+        defmt::info!("a tick of {=u32} us", TICK_US);
+        pulse_timer.start();
+        tick_timer.start();
+        let local = Local {
+            pulses: Pulses::new(stage, take_plan, gate, TICK_US),
+            pulse_timer,
+            device: Device::new(controller, tick_ends, deadline),
+            tick_timer,
+            watchdog,
+            from_host,
+            received,
+            arrived,
+            to_host,
+            server,
         };
-        let mut bytes = [0; size_of::<Frame>()];
-        for (place, word) in bytes.chunks_exact_mut(4).zip(frame) {
-            place.copy_from_slice(&word.to_le_bytes());
+        (Shared {}, local)
+    }
+
+    /// A step of the schedule begins, or the tick calls. Deadline: [`firmware::LEAST_PHASE_US`].
+    #[task(binds = TIM2, priority = 3, local = [pulses, pulse_timer])]
+    fn pulse(context: pulse::Context) {
+        let pulse::LocalResources { pulses, pulse_timer, .. } = context.local;
+        if !pulse_timer.has_run_out() {
+            pulses.attend();
+            return;
         }
-        host.write_all(&bytes)?;
-        sent += 1;
+        let next_us = pulses.timer();
+        pulse_timer.set_next(next_us);
+        if pulse_timer.has_run_out() {
+            pulses.overran();
+        }
     }
-    Ok(())
+
+    /// The hard tick. Deadline: the next one.
+    #[task(binds = SysTick, priority = 2, local = [device, tick_timer, watchdog])]
+    fn tick(context: tick::Context) {
+        let tick::LocalResources { device, tick_timer, watchdog, .. } = context.local;
+        // The one that calls.
+        tick_timer.was_due();
+        let armed = device.tick(tick_timer.since_due());
+        if !armed {
+            rtic::pend(pac::Interrupt::TIM2);
+        }
+        let next_is_due = tick_timer.was_due();
+        if device.finish(tick_timer.since_due(), next_is_due) {
+            watchdog.feed(armed);
+        } else {
+            rtic::pend(pac::Interrupt::TIM2);
+        }
+    }
+
+    /// A byte has come. One takes longer than a tick, which runs above this.
+    #[task(binds = USART1, priority = 1, local = [from_host, received])]
+    fn receive(context: receive::Context) {
+        let receive::LocalResources { from_host, received, .. } = context.local;
+        if let Some(byte) = from_host.read() {
+            // A host that does not wait for answers loses what it sends; the frame's checksum tells it.
+            let _full = received.enqueue(byte);
+        }
+    }
+
+    /// The link.
+    #[idle(local = [arrived, to_host, server])]
+    fn idle(context: idle::Context) -> ! {
+        let idle::LocalResources { arrived, to_host, server, .. } = context.local;
+        loop {
+            server.poll();
+            while server.is_ready()
+                && let Some(received) = arrived.dequeue()
+            {
+                match received {
+                    Received::Byte(byte) => server.receive(byte),
+                    Received::Lost => server.lost(),
+                }
+            }
+            if to_host.is_ready()
+                && let Some(byte) = server.transmit()
+            {
+                to_host.write(byte);
+            }
+            if server.is_idle() && !arrived.ready() {
+                cortex_m::asm::wfi();
+            }
+        }
+    }
 }
 
-/// The tick. Deadline: the next one, 1 ms on.
-#[exception]
-fn SysTick() {
-    static mut TICK: Option<Tick> = None;
-    if TICK.is_none() {
-        *TICK = critical_section::with(|cs| HANDOVER.take(cs));
-    }
-    if let Some(tick) = TICK
-        && tick.rig.ticks() < TICKS
-    {
-        tick.rig.tick(&mut Scenario, &mut tick.outlet);
-    }
-}
-
+/// Starts again: everything is off at boot.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    end::finish(false)
+    board::reset()
 }

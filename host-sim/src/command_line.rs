@@ -2,6 +2,7 @@
 
 mod arm;
 mod cycles;
+mod hil;
 mod sweep;
 
 use crate::chart::{Chart, Panel, Point};
@@ -11,7 +12,7 @@ use crate::golden;
 use crate::link;
 use crate::muscle_file;
 use crate::readme;
-use crate::reference::Mode;
+use crate::reference::{Mode, Muscle};
 use crate::report;
 use crate::trace::{self, InputTrace, OutputRow};
 use crate::verify::{self, Report};
@@ -43,6 +44,8 @@ enum Command {
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
     Cycles(cycles::CyclesArgs),
+    /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the host's.
+    Hil(hil::HilArgs),
     /// Let six muscles move a planar arm of two joints, at constant activations.
     Arm(arm::ArmArgs),
     /// Make the paper's figures 3 to 7 again, with their numbers and what became of its claims.
@@ -167,6 +170,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => draw(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
+        Command::Hil(args) => hil::run(&args).map(|()| true),
         Command::Arm(args) => arm::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Report(args) => write_report(&args).map(|()| true),
@@ -196,21 +200,7 @@ fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
 fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
     let muscle = muscle_file::read(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
-    for (read, file) in [("--input", &args.input), ("--muscle", &args.muscle)] {
-        if trace::same_file(&args.output, file) {
-            let output = args.output.display();
-            return Err(format!("--output {output}: must be another file than {read}'s").into());
-        }
-    }
-    let (shortest, longest) = link::path_domain(&muscle);
-    let first = trace.inputs[0].path_length;
-    if !(shortest..=longest).contains(&first) {
-        let problem = format!(
-            "{first}: the muscle's path is between {shortest:.6} and {longest:.6} m, \
-             and the first row is where it rests"
-        );
-        return Err(trace::cell_error(&args.input, 2, "path_length_m", problem).into());
-    }
+    check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
     let rows: Vec<OutputRow> = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?
         .into_iter()
         .enumerate()
@@ -225,6 +215,32 @@ fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
         })
         .collect();
     trace::write_outputs(&args.output, &rows)?;
+    Ok(())
+}
+
+/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle can rest.
+fn check_run(
+    output: &Path,
+    input: &Path,
+    muscle_file: &Path,
+    muscle: &Muscle,
+    trace: &InputTrace,
+) -> Result<(), Box<dyn Error>> {
+    for (read, file) in [("--input", input), ("--muscle", muscle_file)] {
+        if trace::same_file(output, file) {
+            let output = output.display();
+            return Err(format!("--output {output}: must be another file than {read}'s").into());
+        }
+    }
+    let (shortest, longest) = link::path_domain(muscle);
+    let first = trace.inputs[0].path_length;
+    if !(shortest..=longest).contains(&first) {
+        let problem = format!(
+            "{first}: the muscle's path is between {shortest:.6} and {longest:.6} m, \
+             and the first row is where it rests"
+        );
+        return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
+    }
     Ok(())
 }
 

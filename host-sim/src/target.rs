@@ -18,6 +18,8 @@ pub const STM32F405: Board = Board { machine: "netduinoplus2", triple: "thumbv7e
 pub const CORTEX_M3: Board = Board { machine: "mps2-an385", triple: "thumbv7m-none-eabi" };
 /// nRF51, a Cortex-M0, which has no long multiplication either.
 pub const CORTEX_M0: Board = Board { machine: "microbit", triple: "thumbv6m-none-eabi" };
+/// The program that is the stimulator.
+pub const STIMULATOR: &str = "firmware";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
@@ -87,10 +89,12 @@ pub fn build(
 ) -> Result<PathBuf, TargetError> {
     let triple = board.triple;
     ensure_library(triple)?;
+    // The stimulator names its chip; all other programs run on any core.
+    let feature = if program == STIMULATOR { "board-stm32f405" } else { "board" };
     // A folder of its own: the host's may be locked by the cargo that runs this.
     let folder = root().join("target/on-target");
     let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
-        .args(["build", "--release", "--package", "firmware", "--features", "board"])
+        .args(["build", "--release", "--package", "firmware", "--features", feature])
         .args(["--target", triple, "--bin", program, "--target-dir"])
         .arg(&folder)
         .envs(variables.iter().copied())

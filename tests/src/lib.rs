@@ -9,6 +9,7 @@ pub struct Readme;
 #[doc = include_str!("../../vm-nostd/README.md")]
 pub struct ModelReadme;
 
+pub mod debugger;
 pub mod device;
 pub mod electrodes;
 pub mod muscles;

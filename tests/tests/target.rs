@@ -72,15 +72,6 @@ fn compare<S: Arithmetic>(on_target: &[u8]) {
     }
 }
 
-#[test]
-fn the_firmware_leaves_the_same_bits_as_the_host_in_every_tick() {
-    let on_target = build(STM32F405, "firmware").and_then(|program| emulate(STM32F405, &program));
-    match on_target {
-        Ok(bytes) => compare::<f32>(&bytes),
-        Err(reason) => skip(&reason.to_string()),
-    }
-}
-
 /// Both arithmetics, both modes, on a core.
 fn golden_on(board: Board) {
     match build(board, "golden").and_then(|program| emulate(board, &program)) {

@@ -1,7 +1,7 @@
 //! The host's end of the link.
 
 use firmware::link::{
-    Answer, Frame, LinkError, Message, Receiver, Refusal, Request, Traced, encode,
+    Answer, Frame, Info, LinkError, Message, Receiver, Refusal, Request, Traced, encode,
 };
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
@@ -81,6 +81,9 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// After so long without any byte, a request is sent again.
 const AGAIN: Duration = Duration::from_secs(5);
 
+/// The same for a greeting.
+const GREET_AGAIN: Duration = Duration::from_millis(300);
+
 /// Asks a device, one request at a time.
 pub struct Client<L> {
     line: L,
@@ -129,6 +132,11 @@ impl<L: Line> Client<L> {
         Ok(self.line.flush()?)
     }
 
+    /// The number of the next request.
+    pub fn sequence(&self) -> u16 {
+        self.sequence
+    }
+
     /// Sends a request, again if it was broken on its way, and waits for its answer.
     pub fn ask(&mut self, request: &Request) -> Result<Answer<'static>, HilError> {
         let name = name(request);
@@ -172,6 +180,29 @@ impl<L: Line> Client<L> {
             }
         }
         Err(HilError::Silence { request: name })
+    }
+
+    /// Begins a session: greets until there is an answer, for a device that is booting hears nothing.
+    pub fn greet(&mut self) -> Result<Info, HilError> {
+        let started = Instant::now();
+        let mut sent: Option<Instant> = None;
+        while started.elapsed() < PATIENCE {
+            if sent.is_none_or(|sent| sent.elapsed() > GREET_AGAIN) {
+                let sequence = self.sequence;
+                self.sequence = sequence.wrapping_add(1);
+                // A zero ends what may have been left on the line.
+                self.send_raw(&[0])?;
+                self.send_raw(&encode(sequence, &Request::Hello).unwrap_or_default())?;
+                sent = Some(Instant::now());
+            }
+            // An answer to an earlier greeting would begin a session that a later one ends.
+            if let Heard::Answer(to, Ok(Answer::Info(info))) = self.hear()?
+                && to.wrapping_add(1) == self.sequence
+            {
+                return Ok(info);
+            }
+        }
+        Err(HilError::Silence { request: "hello" })
     }
 
     /// The same where there is nothing to be said but that it was done.

@@ -67,12 +67,7 @@ pub fn play<L: Line>(
 
 /// Begins a session with a device that has the right tick.
 pub(super) fn begin<L: Line>(client: &mut Client<L>, time_step: f64) -> Result<(), HilError> {
-    // Ends what may have been left on the line.
-    client.send_raw(&[0])?;
-    let Answer::Info(info) = client.ask(&Request::Hello)? else {
-        return Err(HilError::OtherAnswer { request: "hello" });
-    };
-    let tick = f64::from(info.tick_us) * 1e-6;
+    let tick = f64::from(client.greet()?.tick_us) * 1e-6;
     if (tick - time_step).abs() > 1e-9 {
         let limit = format!("the device's tick is {tick} s");
         return Err(HilError::Unfit { what: "time step (s)", value: time_step.to_string(), limit });

@@ -1,0 +1,83 @@
+//! `vm hil`: a trace played to a muscle on a device, and its bits against the host's.
+
+use super::{ModeName, print};
+use crate::engine;
+use crate::hil::{self, Client, Emulated, HilError, Line, Played};
+use crate::muscle_file;
+use crate::reference::{Mode, Muscle};
+use crate::trace::{self, InputTrace, OutputRow};
+use clap::Args;
+use indicatif::ProgressBar;
+use std::error::Error;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct HilArgs {
+    /// The muscle, in TOML.
+    #[arg(long)]
+    muscle: PathBuf,
+    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick of the device.
+    #[arg(long)]
+    input: PathBuf,
+    /// Where the device's outputs go, in CSV.
+    #[arg(long)]
+    output: PathBuf,
+    /// How the muscle is recruited: continuous or fes.
+    #[arg(long, value_enum)]
+    mode: ModeName,
+    /// The serial port of a board; without one, the firmware is built and runs in QEMU.
+    #[arg(long)]
+    port: Option<String>,
+    /// Bits per second on that port.
+    #[arg(long, default_value_t = 115_200, requires = "port")]
+    baud: u32,
+}
+
+pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
+    let muscle = muscle_file::read(&args.muscle)?.muscle;
+    let trace = trace::read_inputs(&args.input)?;
+    super::check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
+    let mode = args.mode.into();
+    let played = match &args.port {
+        Some(port) => play(hil::serial(port, args.baud)?, &muscle, mode, &trace),
+        None => play(Emulated::start()?, &muscle, mode, &trace),
+    }?;
+    let rows: Vec<OutputRow> = played
+        .rows
+        .iter()
+        .enumerate()
+        .map(|(row, &(sample, status))| OutputRow {
+            time: trace.time(row),
+            sample,
+            status: engine::status_names(status),
+        })
+        .collect();
+    trace::write_outputs(&args.output, &rows)?;
+    let Played { words, report, .. } = &played;
+    print(&format!(
+        "{} rows and {} words of state, all bits equal to the host's; longest tick {} us, {} late of {}, \
+         {} frames broken and {} refused",
+        rows.len(),
+        words.len(),
+        report.longest_us,
+        report.late,
+        report.ticks,
+        report.frames.broken,
+        report.frames.refused,
+    ))?;
+    Ok(())
+}
+
+fn play<L: Line>(
+    mut client: Client<L>,
+    muscle: &Muscle,
+    mode: Mode,
+    trace: &InputTrace,
+) -> Result<Played, HilError> {
+    let bar = ProgressBar::new(trace.inputs.len() as u64);
+    let played = hil::play(&mut client, muscle, mode, trace, &mut |rows| {
+        bar.set_position(rows as u64);
+    });
+    bar.finish_and_clear();
+    played
+}

@@ -1,0 +1,101 @@
+//! A debugger's line into an emulator (GDB's remote protocol): reads and writes memory while time stands still.
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::time::Duration;
+
+/// Where a debugger can attach to an emulator.
+pub struct Port(u16);
+
+impl Port {
+    /// One that is free.
+    pub fn free() -> Self {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+        Self(listener.local_addr().expect("an address").port())
+    }
+
+    /// What the emulator has to be told.
+    pub fn arguments(&self) -> Vec<String> {
+        vec!["-gdb".to_owned(), format!("tcp:127.0.0.1:{},nodelay=on", self.0)]
+    }
+
+    /// Stops the machine.
+    pub fn attach(&self) -> Debugger {
+        let stream = TcpStream::connect(("127.0.0.1", self.0)).expect("an emulator");
+        stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
+        Debugger(stream)
+    }
+}
+
+/// Attached to a machine that stands still.
+pub struct Debugger(TcpStream);
+
+/// Bytes that one packet reads.
+const CHUNK: usize = 512;
+
+impl Debugger {
+    /// Lets it run.
+    pub fn go_on(&mut self) {
+        self.send("c");
+    }
+
+    /// Memory of the stopped machine.
+    pub fn read(&mut self, address: u64, length: usize) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        while bytes.len() < length {
+            let part = CHUNK.min(length - bytes.len());
+            self.send(&format!("m{:x},{part:x}", address + bytes.len() as u64));
+            let reply = self.reply();
+            assert_eq!(reply.len(), 2 * part, "{reply}");
+            bytes.extend(
+                (0..part).map(|at| {
+                    u8::from_str_radix(&reply[2 * at..2 * at + 2], 16).expect("two digits")
+                }),
+            );
+        }
+        bytes
+    }
+
+    /// Writes memory of the stopped machine, flash as well.
+    pub fn write(&mut self, address: u64, bytes: &[u8]) {
+        let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        self.send(&format!("M{address:x},{:x}:{digits}", bytes.len()));
+        assert_eq!(self.reply(), "OK");
+    }
+
+    fn send(&mut self, command: &str) {
+        let sum = command.bytes().fold(0_u8, u8::wrapping_add);
+        write!(self.0, "${command}#{sum:02x}").expect("a line");
+    }
+
+    /// The answer to a command: what comes besides says that the machine has stopped.
+    fn reply(&mut self) -> String {
+        loop {
+            let packet = self.packet();
+            if !packet.starts_with('T') {
+                return packet;
+            }
+        }
+    }
+
+    /// The next packet, acknowledged.
+    fn packet(&mut self) -> String {
+        let mut byte = [0];
+        let mut next = || {
+            self.0.read_exact(&mut byte).expect("a packet");
+            byte[0]
+        };
+        while next() != b'$' {}
+        let mut text = Vec::new();
+        loop {
+            match next() {
+                b'#' => break,
+                other => text.push(other),
+            }
+        }
+        next();
+        next();
+        self.0.write_all(b"+").expect("a line");
+        String::from_utf8(text).expect("a text")
+    }
+}

@@ -1,0 +1,376 @@
+//! The stimulator as it would be flashed, in QEMU: the host's bits over its USART, and the main faults.
+//!
+//! Requests of a fault's script wait in the line before the firmware looks for them: time is its own, and does not
+//! depend on how fast this host is.
+
+use firmware::link::{
+    Answer, Message, Mode, Readings, Receiver, Refusal, Report, Request, Upload, encode,
+};
+use firmware::safety::{CHANNELS, Fault, NotArmed, State};
+use firmware::{MUSCLE, Stimulus};
+use host_sim::hil::{self, Client, Emulated};
+use host_sim::target::{STIMULATOR, STM32F405};
+use host_sim::{muscle_file, reference, trace};
+use object::{Object, ObjectSymbol};
+use std::collections::VecDeque;
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use system_tests::debugger::Port;
+use system_tests::{build, skip};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/data").join(name)
+}
+
+/// The firmware's image, if it is to be had.
+fn image() -> Option<PathBuf> {
+    let built = build(STM32F405, STIMULATOR).and_then(|image| {
+        let version = std::process::Command::new(host_sim::target::QEMU).arg("--version").output();
+        version.map_err(host_sim::target::start_error(host_sim::target::QEMU)).map(|_| image)
+    });
+    built.map_err(|reason| skip(&reason.to_string())).ok()
+}
+
+#[test]
+fn traces_played_to_the_firmware_have_the_bits_of_the_hosts_run() {
+    let Some(image) = image() else { return };
+    let muscle =
+        muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
+    for (vector, mode) in [
+        ("fes_steps", reference::Mode::Fes),
+        ("continuous_activation_3hz", reference::Mode::Continuous),
+    ] {
+        let trace = trace::read_inputs(&data(&format!("vectors/{vector}.csv"))).expect("inputs");
+        let mut client = Client::new(Emulated::run(&image, &[]).expect("a machine"));
+        let played =
+            hil::play(&mut client, &muscle, mode, &trace, &mut |_| ()).expect("equal bits");
+        assert_eq!(played.rows.len(), trace.inputs.len());
+        let Report { longest_us, late, frames, .. } = played.report;
+        assert_eq!((late, frames.broken, frames.refused), (0, 0, 0));
+        // By instructions of 8 ns each.
+        assert!((10..=80).contains(&longest_us), "{longest_us} us");
+    }
+}
+
+/// A machine, and what its pins did.
+struct Machine {
+    line: Emulated,
+    receiver: Receiver,
+    sequence: u16,
+    log: tempfile::NamedTempFile,
+}
+
+const READINGS: Readings =
+    Readings { impedance_ohm: [Some(1000); CHANNELS], supply_mv: 3700, path_um: Some(160_000) };
+
+fn stimulus(amplitude_ua: u32) -> Stimulus {
+    Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 1000, recovery: 1 }
+}
+
+/// Messages that keep a host heard for some hundredths of a second.
+const KEPT_ALIVE: usize = 400;
+
+/// Bytes that may be on their way to the firmware, which has room for a thousand.
+const WINDOW: usize = 800;
+
+/// Pulses of 10 mA on all channels, 400 a second.
+fn drive() -> Request {
+    Request::Drive([Some(stimulus(10_000)); CHANNELS])
+}
+
+/// What a device said to a request.
+#[derive(Clone, Debug, PartialEq)]
+enum Said {
+    Done,
+    NotArmed(NotArmed),
+    Report(Report),
+    Words(Vec<u32>),
+    Other(String),
+}
+
+impl Machine {
+    fn start(image: &Path, arguments: Vec<String>) -> Self {
+        let log = tempfile::NamedTempFile::new().expect("a file");
+        // QEMU has no pins: what is written to them is in its log.
+        let mut all = ["-d", "unimp", "-D"].map(str::to_owned).to_vec();
+        all.push(log.path().display().to_string());
+        all.extend(arguments);
+        let mut client = Client::new(Emulated::run(image, &all).expect("a machine"));
+        client.greet().expect("a greeting");
+        let sequence = client.sequence();
+        Self { line: client.into_line(), receiver: Receiver::new(), sequence, log }
+    }
+
+    /// Sends requests, and returns what was said to each.
+    fn script(&mut self, requests: &[Request]) -> Vec<Said> {
+        self.converse(requests, 0)
+    }
+
+    /// The same, but for the last ones, whose answers are not waited for.
+    ///
+    /// As much is always on its way as the firmware has room for: it finds the next request as soon as it looks.
+    fn converse(&mut self, requests: &[Request], unanswered: usize) -> Vec<Said> {
+        let mut frames = requests.iter();
+        let (mut lengths, mut said) = (VecDeque::new(), Vec::new());
+        let started = Instant::now();
+        let mut byte = [0];
+        loop {
+            while lengths.iter().sum::<usize>() < WINDOW
+                && let Some(request) = frames.next()
+            {
+                let frame = encode(self.sequence, request).expect("a frame");
+                self.sequence = self.sequence.wrapping_add(1);
+                self.line.write_all(&frame).expect("a line");
+                lengths.push_back(frame.len());
+            }
+            if said.len() + unanswered >= requests.len() {
+                return said;
+            }
+            assert!(started.elapsed() < Duration::from_secs(60), "silence after {said:?}");
+            match self.line.read(&mut byte) {
+                Ok(_) => (),
+                Err(error)
+                    if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) =>
+                {
+                    continue;
+                }
+                Err(error) => panic!("{error}"),
+            }
+            let Some(frame) = self.receiver.push(byte[0]) else { continue };
+            let frame = frame.expect("a whole frame");
+            match postcard::from_bytes(frame.content).expect("a message") {
+                Message::Answer { to, answer } => {
+                    lengths.pop_front();
+                    let behind = u16::try_from(frames.len() + lengths.len() + 1).expect("few");
+                    let all = u16::try_from(frames.len()).expect("few");
+                    assert_eq!(to, self.sequence.wrapping_add(all).wrapping_sub(behind));
+                    said.push(match answer {
+                        Answer::Done => Said::Done,
+                        Answer::Report(report) => Said::Report(report),
+                        Answer::State(words) => Said::Words(words.to_vec()),
+                        Answer::Refused(Refusal::NotArmed(reason)) => Said::NotArmed(reason),
+                        other => Said::Other(format!("{other:?}")),
+                    });
+                }
+                Message::Traces(_) => (),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    fn report(&mut self) -> Report {
+        match self.script(&[Request::Report])[..] {
+            [Said::Report(report)] => report,
+            ref other => panic!("{other:?}"),
+        }
+    }
+
+    /// Names the fault that is latched, arms, and gives pulses for a while; then what is to happen. Returns how it
+    /// was before that, and what was said to it.
+    ///
+    /// All in one, for between two scripts the firmware's host is silent for any time.
+    fn stimulated(&mut self, latched: Fault, then: &[Request]) -> (Report, Vec<Said>) {
+        let mut requests =
+            vec![Request::Readings(READINGS), drive(), Request::Acknowledge(latched), Request::Arm];
+        requests.extend(std::iter::repeat_n(Request::KeepAlive, KEPT_ALIVE));
+        let armed = requests.len();
+        requests.push(Request::Report);
+        requests.extend_from_slice(then);
+        let mut said = self.script(&requests);
+        let after = said.split_off(armed + 1);
+        let Some(Said::Report(report)) = said.pop() else { panic!("{said:?}") };
+        assert!(said.iter().all(|one| *one == Said::Done), "{said:?}");
+        assert_eq!(report.state, State::Armed);
+        (report, after)
+    }
+
+    /// Levels of bridge and channel pins, as the log's end has them, and how often the bridge was closed.
+    fn pins(&self) -> Pins {
+        let text = std::fs::read_to_string(self.log.path()).expect("a log");
+        let mut pins = Pins::default();
+        for line in text.lines() {
+            let Some((port, rest)) = line.split_once(": unimplemented device write (size 4, ")
+            else {
+                continue;
+            };
+            let Some(value) = rest.strip_prefix("offset 0x018, value 0x") else { continue };
+            let value = u32::from_str_radix(value.trim_end_matches(')'), 16).expect("a word");
+            let levels = match port {
+                "GPIOB" => &mut pins.bridge,
+                "GPIOC" => &mut pins.channels,
+                _ => continue,
+            };
+            pins.closed += u32::from(port == "GPIOB" && value & 3 != 0);
+            // Set by the lower half, reset by the upper one.
+            *levels = (*levels | value & 0xffff) & !(value >> 16);
+        }
+        pins
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Pins {
+    bridge: u32,
+    channels: u32,
+    closed: u32,
+}
+
+/// A fault, what is sent to inject it, and whether its cause goes away with good readings.
+fn cases() -> Vec<(Fault, Request)> {
+    let readings = |readings| Request::Readings(readings);
+    let wanted = |stimulus| Request::Drive([Some(stimulus), None, None, None]);
+    vec![
+        (Fault::Amplitude, wanted(stimulus(100_001))),
+        (Fault::Width, wanted(Stimulus { width_us: 501, ..stimulus(1000) })),
+        (Fault::Frequency, wanted(Stimulus { frequency_tenths_pps: 1001, ..stimulus(1000) })),
+        (Fault::Request, wanted(Stimulus { recovery: 9, ..stimulus(1000) })),
+        (Fault::Supply, readings(Readings { supply_mv: 2999, ..READINGS })),
+        (
+            Fault::ElectrodeOpen,
+            readings(Readings { impedance_ohm: [Some(5001), None, None, None], ..READINGS }),
+        ),
+        (
+            Fault::ElectrodeShort,
+            readings(Readings { impedance_ohm: [None, None, Some(99), None], ..READINGS }),
+        ),
+        (Fault::SensorMissing, readings(Readings { path_um: None, ..READINGS })),
+        (Fault::SensorJump, readings(Readings { path_um: Some(161_001), ..READINGS })),
+        (Fault::Stopped, Request::Stop),
+    ]
+}
+
+#[test]
+fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
+    let Some(image) = image() else { return };
+    let mut machine = Machine::start(&image, Vec::new());
+    // Off at boot, whatever is asked for.
+    let said =
+        machine.script(&[Request::Readings(READINGS), drive(), Request::Arm, Request::Report]);
+    assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
+    assert!(matches!(said[3], Said::Report(Report { state: State::Latched(Fault::Boot), .. })));
+    assert_eq!(machine.pins(), Pins::default());
+
+    let (mut latched, mut pins) = (Fault::Boot, Pins::default());
+    for (fault, injection) in cases() {
+        let then = [injection, Request::Report, Request::Arm];
+        let (before, said) = machine.stimulated(latched, &then);
+        let Said::Report(after) = said[1] else { panic!("{said:?}") };
+        assert_eq!(after.state, State::Latched(fault));
+        assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
+        // A short message later.
+        assert!(after.ticks - before.ticks <= 4, "{before:?}, {after:?}");
+        assert_eq!((after.late, after.frames.broken), (0, 0));
+        // There were pulses; now there is no way for a current, and none is opened again.
+        let closed = pins.closed;
+        pins = machine.pins();
+        assert!(pins.closed > closed + 10, "{fault:?}: {pins:?}");
+        assert_eq!((pins.bridge, pins.channels), (0, 0), "{fault:?}");
+        machine.script(&vec![Request::KeepAlive; KEPT_ALIVE]);
+        assert_eq!(machine.pins(), pins, "{fault:?}: pulses after it");
+        latched = fault;
+    }
+
+    // A host that says nothing.
+    machine.stimulated(latched, &[]);
+    std::thread::sleep(Duration::from_millis(300));
+    let report = machine.report();
+    assert_eq!(report.state, State::Latched(Fault::Silence));
+    assert_eq!((machine.pins().bridge, machine.pins().channels), (0, 0));
+}
+
+/// Address and size of the statics and functions whose name contains a text.
+fn symbol(image: &Path, text: &str) -> (u64, usize) {
+    let bytes = std::fs::read(image).expect("an image");
+    let file = object::File::parse(&*bytes).expect("an ELF file");
+    let found: Vec<(u64, u64)> = file
+        .symbols()
+        .filter(|symbol| symbol.name().is_ok_and(|name| name.contains(text)))
+        .map(|symbol| (symbol.address(), symbol.size()))
+        .collect();
+    assert_eq!(found.len(), 1, "{text}: {found:x?}");
+    (found[0].0, usize::try_from(found[0].1).expect("a size"))
+}
+
+/// One bit of a muscle's state in RAM: a fault, not a force.
+#[test]
+fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
+    let Some(image) = image() else { return };
+    let port = Port::free();
+    let mut machine = Machine::start(&image, port.arguments());
+    let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: None };
+    let rest = Request::Rest([Some(0.16), None]);
+    let said = machine.script(&[
+        Request::Upload { place: 0, upload },
+        rest.clone(),
+        Request::State { place: 0 },
+    ]);
+    let Said::Words(words) = &said[2] else { panic!("{said:?}") };
+
+    let (address, size) = symbol(&image, "local_resource_device");
+    let mut debugger = port.attach();
+    let memory = debugger.read(address, size);
+    // Tendon extension, velocity and path lie one behind the other, somewhere in what the tick owns.
+    let pattern: Vec<u8> = words[..3].iter().flat_map(|word| word.to_le_bytes()).collect();
+    let found: Vec<usize> = (0..memory.len() - pattern.len())
+        .filter(|&at| memory[at..].starts_with(&pattern))
+        .collect();
+    assert_eq!(found.len(), 1, "the state in {size} bytes");
+    debugger.write(address + found[0] as u64, &[memory[found[0]] ^ 0x01]);
+    debugger.go_on();
+
+    let said = machine.script(&[
+        Request::Readings(READINGS),
+        Request::Report,
+        Request::Acknowledge(Fault::Boot),
+        Request::Arm,
+    ]);
+    let Said::Report(report) = said[1] else { panic!("{said:?}") };
+    assert_eq!(report.wrong, Some(Fault::Checksum));
+    // It lasts: no current by way of that muscle.
+    assert_eq!(said[3], Said::NotArmed(NotArmed::StillThere(Fault::Checksum)));
+    assert_eq!(machine.pins(), Pins::default());
+    // A muscle at rest again, with checksums of its own, ends it.
+    machine.script(&[rest]);
+    let (report, _) = machine.stimulated(Fault::Boot, &[]);
+    assert_eq!(report.wrong, None);
+    assert!(machine.pins().closed > 10);
+}
+
+/// How often the bridge was closed when a debugger stops a busy machine, and once it has gone on, with the tick made
+/// to hang where it begins if it is to; both while a host is still heard.
+fn closed_around(image: &Path, hangs: bool) -> (u32, u32) {
+    let port = Port::free();
+    let mut machine = Machine::start(image, port.arguments());
+    let mut requests =
+        vec![Request::Readings(READINGS), Request::Acknowledge(Fault::Boot), Request::Arm, drive()];
+    requests.extend(std::iter::repeat_n(Request::KeepAlive, KEPT_ALIVE));
+    let said = machine.converse(&requests, 50);
+    assert!(said.iter().all(|one| *one == Said::Done), "{said:?}");
+    let mut debugger = port.attach();
+    if hangs {
+        let (address, _) = symbol(image, "SysTick");
+        // A branch to itself. Addresses of functions are odd.
+        debugger.write(address & !1, &[0xfe, 0xe7]);
+    }
+    let before = machine.pins().closed;
+    debugger.go_on();
+    std::thread::sleep(Duration::from_millis(300));
+    let pins = machine.pins();
+    assert_eq!((pins.bridge, pins.channels), (0, 0));
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(machine.pins(), pins);
+    (before, pins.closed)
+}
+
+/// The pulse timer stops by itself.
+#[test]
+fn a_tick_that_never_ends_leaves_no_current_on_the_emulated_chip() {
+    let Some(image) = image() else { return };
+    // Without the hang, pulses go on for as long as the host is heard, and a tenth of a second more.
+    let (before, after) = closed_around(&image, false);
+    assert!(before > 20 && after > before + 40, "{before}, {after}");
+    // With it, there is a tick that had begun, and two ticks' patience: a pulse of each channel, closed twice.
+    let (before, after) = closed_around(&image, true);
+    assert!(before > 20 && after <= before + 8, "{before}, {after}");
+}
