@@ -1,0 +1,311 @@
+//! Parameters as C has them.
+
+use crate::result::{VmError, VmResult};
+use crate::slot::VM_FIBERS;
+use model::{
+    ActivationParams, CompressionParams, ElementParams, ExcitationParams, FiberParams, FiberType,
+    ForceLengthParams, ForceVelocityParams, Limit, MuscleParams, ParallelParams, ParameterError,
+    SagParams, TendonParams, YieldParams, human_vm4, paper_table_1,
+};
+
+/// A muscle of two fibre types.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct VmMuscleParams {
+    /// Mass, kg; 1e-5 to 20.
+    pub mass_kg: f64,
+    /// Optimal fascicle length L_ce0, m; 0.005 to 1.
+    pub fascicle_length_m: f64,
+    /// Optimal tendon length L_se0, m; 0.001 to 2.
+    pub tendon_length_m: f64,
+    /// Longest musculotendon path, m.
+    pub max_path_length_m: f64,
+    /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
+    pub recruitment_saturation: f64,
+    /// What the fibre types share.
+    pub elements: VmElements,
+    /// Fibre types in order of rank; their fractions add to 1.
+    pub fibers: [VmFiber; VM_FIBERS],
+}
+
+/// What fibre types share.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct VmElements {
+    /// c_T.
+    pub tendon_stiffness: f64,
+    /// k_T.
+    pub tendon_toe: f64,
+    /// L_r_T, L_se0.
+    pub tendon_slack_length: f64,
+    /// c_1.
+    pub parallel_stiffness: f64,
+    /// k_1.
+    pub parallel_toe: f64,
+    /// L_r1, L_max.
+    pub parallel_slack_length: f64,
+    /// eta, F0 s/L_ce0.
+    pub parallel_viscosity: f64,
+    /// c_2.
+    pub compression_strength: f64,
+    /// k_2.
+    pub compression_steepness: f64,
+    /// L_r2, L_ce0.
+    pub compression_onset_length: f64,
+    /// Force per cross-sectional area, N/m^2.
+    pub specific_tension: f64,
+    /// Density of muscle, kg/m^3.
+    pub density: f64,
+}
+
+/// A fibre type and its share of a muscle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct VmFiber {
+    /// Share of the cross-sectional area; 0.001 to 1.
+    pub fraction: f64,
+    /// Order of recruitment: super-slow 1, slow 2, fast 3; 1 to 255.
+    pub rank: u8,
+    /// Whether it sags: 0 or 1.
+    pub has_sag: u8,
+    /// Whether it yields: 0 or 1.
+    pub has_yield: u8,
+    /// f_0.5, pps.
+    pub half_force_frequency: f64,
+    /// f_min, f_0.5.
+    pub minimum_frequency: f64,
+    /// f_max, f_0.5.
+    pub maximum_frequency: f64,
+    /// omega of FL.
+    pub force_length_width: f64,
+    /// beta of FL.
+    pub force_length_skewness: f64,
+    /// rho of FL.
+    pub force_length_roundness: f64,
+    /// V_max, L_ce0/s, negative.
+    pub maximum_velocity: f64,
+    /// c_V0, c_V1 of FV.
+    pub shortening: [f64; 2],
+    /// a_V0, a_V1, a_V2 of FV.
+    pub lengthening: [f64; 3],
+    /// b_V of FV.
+    pub lengthening_velocity: f64,
+    /// a_f of Af.
+    pub activation_scale: f64,
+    /// n_f0 of Af.
+    pub activation_exponent: f64,
+    /// n_f1 of Af.
+    pub activation_length_dependence: f64,
+    /// T_f1, s.
+    pub rise_s: f64,
+    /// T_f2, s.
+    pub rise_per_frequency_s: f64,
+    /// T_f3, s.
+    pub fall_s: f64,
+    /// T_f4, s.
+    pub fall_per_activation_s: f64,
+    /// a_S1, if it sags.
+    pub sag_resting_level: f64,
+    /// a_S2, if it sags.
+    pub sag_firing_level: f64,
+    /// T_S, s, if it sags.
+    pub sag_time_s: f64,
+    /// c_Y, if it yields.
+    pub yield_depth: f64,
+    /// V_Y, L_ce0/s, if it yields.
+    pub yield_velocity: f64,
+    /// T_Y, s, if it yields.
+    pub yield_time_s: f64,
+}
+
+impl VmMuscleParams {
+    /// The same for the model; flags that are neither 0 nor 1 are refused.
+    pub(crate) fn model(&self) -> Result<MuscleParams<VM_FIBERS>, ParameterError> {
+        let e = &self.elements;
+        let [first, second] = self.fibers;
+        Ok(MuscleParams {
+            mass: self.mass_kg,
+            fascicle_length: self.fascicle_length_m,
+            tendon_length: self.tendon_length_m,
+            max_path_length: self.max_path_length_m,
+            recruitment_saturation: self.recruitment_saturation,
+            elements: ElementParams {
+                tendon: TendonParams {
+                    stiffness: e.tendon_stiffness,
+                    toe: e.tendon_toe,
+                    slack_length: e.tendon_slack_length,
+                },
+                parallel: ParallelParams {
+                    stiffness: e.parallel_stiffness,
+                    toe: e.parallel_toe,
+                    slack_length: e.parallel_slack_length,
+                    viscosity: e.parallel_viscosity,
+                },
+                compression: CompressionParams {
+                    strength: e.compression_strength,
+                    steepness: e.compression_steepness,
+                    onset_length: e.compression_onset_length,
+                },
+                specific_tension: e.specific_tension,
+                density: e.density,
+            },
+            fibers: [first.model(0)?, second.model(1)?],
+        })
+    }
+}
+
+impl From<&ElementParams> for VmElements {
+    fn from(e: &ElementParams) -> Self {
+        Self {
+            tendon_stiffness: e.tendon.stiffness,
+            tendon_toe: e.tendon.toe,
+            tendon_slack_length: e.tendon.slack_length,
+            parallel_stiffness: e.parallel.stiffness,
+            parallel_toe: e.parallel.toe,
+            parallel_slack_length: e.parallel.slack_length,
+            parallel_viscosity: e.parallel.viscosity,
+            compression_strength: e.compression.strength,
+            compression_steepness: e.compression.steepness,
+            compression_onset_length: e.compression.onset_length,
+            specific_tension: e.specific_tension,
+            density: e.density,
+        }
+    }
+}
+
+impl VmFiber {
+    fn model(&self, index: usize) -> Result<FiberParams, ParameterError> {
+        let flag = |field, value: u8| match value {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(ParameterError {
+                field,
+                fiber: Some(index),
+                value: other.into(),
+                limit: Limit::Within { least: 0.0, most: 1.0 },
+            }),
+        };
+        let sags = flag("has_sag", self.has_sag)?;
+        let yields = flag("has_yield", self.has_yield)?;
+        Ok(FiberParams {
+            fraction: self.fraction,
+            fiber_type: FiberType {
+                rank: self.rank,
+                half_force_frequency: self.half_force_frequency,
+                minimum_frequency: self.minimum_frequency,
+                maximum_frequency: self.maximum_frequency,
+                force_length: ForceLengthParams {
+                    width: self.force_length_width,
+                    skewness: self.force_length_skewness,
+                    roundness: self.force_length_roundness,
+                },
+                force_velocity: ForceVelocityParams {
+                    maximum_velocity: self.maximum_velocity,
+                    shortening: self.shortening,
+                    lengthening: self.lengthening,
+                    lengthening_velocity: self.lengthening_velocity,
+                },
+                activation: ActivationParams {
+                    scale: self.activation_scale,
+                    exponent: self.activation_exponent,
+                    length_dependence: self.activation_length_dependence,
+                },
+                excitation: ExcitationParams {
+                    rise: self.rise_s,
+                    rise_per_frequency: self.rise_per_frequency_s,
+                    fall: self.fall_s,
+                    fall_per_activation: self.fall_per_activation_s,
+                },
+                // Of a mode that is not here.
+                effective_length_time: paper_table_1::SLOW.effective_length_time,
+                sag: sags.then_some(SagParams {
+                    resting_level: self.sag_resting_level,
+                    firing_level: self.sag_firing_level,
+                    time_constant: self.sag_time_s,
+                }),
+                yielding: yields.then_some(YieldParams {
+                    depth: self.yield_depth,
+                    velocity: self.yield_velocity,
+                    time_constant: self.yield_time_s,
+                }),
+            },
+        })
+    }
+
+    fn of(t: &FiberType) -> Self {
+        let nothing = (0.0, 0.0, 0.0);
+        let sag =
+            t.sag.as_ref().map_or(nothing, |s| (s.resting_level, s.firing_level, s.time_constant));
+        let yielding =
+            t.yielding.as_ref().map_or(nothing, |y| (y.depth, y.velocity, y.time_constant));
+        Self {
+            fraction: 1.0 / VM_FIBERS as f64,
+            rank: t.rank,
+            has_sag: t.sag.is_some().into(),
+            has_yield: t.yielding.is_some().into(),
+            half_force_frequency: t.half_force_frequency,
+            minimum_frequency: t.minimum_frequency,
+            maximum_frequency: t.maximum_frequency,
+            force_length_width: t.force_length.width,
+            force_length_skewness: t.force_length.skewness,
+            force_length_roundness: t.force_length.roundness,
+            maximum_velocity: t.force_velocity.maximum_velocity,
+            shortening: t.force_velocity.shortening,
+            lengthening: t.force_velocity.lengthening,
+            lengthening_velocity: t.force_velocity.lengthening_velocity,
+            activation_scale: t.activation.scale,
+            activation_exponent: t.activation.exponent,
+            activation_length_dependence: t.activation.length_dependence,
+            rise_s: t.excitation.rise,
+            rise_per_frequency_s: t.excitation.rise_per_frequency,
+            fall_s: t.excitation.fall,
+            fall_per_activation_s: t.excitation.fall_per_activation,
+            sag_resting_level: sag.0,
+            sag_firing_level: sag.1,
+            sag_time_s: sag.2,
+            yield_depth: yielding.0,
+            yield_velocity: yielding.1,
+            yield_time_s: yielding.2,
+        }
+    }
+}
+
+/// Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are one half each.
+/// A null pointer is passed over.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn vm_params_paper(
+    elements: Option<&mut VmElements>,
+    slow: Option<&mut VmFiber>,
+    fast: Option<&mut VmFiber>,
+) {
+    give(elements, || (&paper_table_1::ELEMENTS).into());
+    give(slow, || VmFiber::of(&paper_table_1::SLOW));
+    give(fast, || VmFiber::of(&paper_table_1::FAST));
+}
+
+/// Elements, a slow and a fast fibre type of man, as Virtual Muscle 4.0 has them; fractions are one half each.
+/// A null pointer is passed over.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn vm_params_human(
+    elements: Option<&mut VmElements>,
+    slow: Option<&mut VmFiber>,
+    fast: Option<&mut VmFiber>,
+) {
+    give(elements, || (&human_vm4::ELEMENTS).into());
+    give(slow, || VmFiber::of(&human_vm4::SLOW));
+    give(fast, || VmFiber::of(&human_vm4::FAST));
+}
+
+fn give<T>(place: Option<&mut T>, value: impl FnOnce() -> T) {
+    if let Some(place) = place {
+        *place = value();
+    }
+}
+
+/// What became of a parameter.
+pub(crate) fn refused(error: ParameterError, place: Option<&mut VmError>) -> VmResult {
+    give(place, || error.into());
+    VmResult::Parameter
+}
