@@ -18,7 +18,7 @@ mod app {
         ToHost, Watchdog, pac,
     };
     use defmt_rtt as _;
-    use firmware::safety::{CHANNELS, Limits};
+    use firmware::safety::{CHANNELS, Fault, Limits};
     use firmware::{Controller, Deadline, Device, Gate, Lines, Plan, Pulses, Server, TICK_US};
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
@@ -73,6 +73,9 @@ mod app {
         let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
         let server = Server::new(link_ends, gate, memory, step);
         defmt::info!("a tick of {=u32} us", TICK_US);
+        if boot == Fault::Watchdog {
+            defmt::warn!("started again by the watchdog");
+        }
         pulse_timer.start();
         tick_timer.start();
         let local = Local {
@@ -133,12 +136,18 @@ mod app {
         }
     }
 
-    /// The link.
+    /// The link, and the log: only while nothing is armed, for a log interrupts the pulse timer's interrupt.
     #[idle(local = [arrived, to_host, server])]
     fn idle(context: idle::Context) -> ! {
         let idle::LocalResources { arrived, to_host, server, .. } = context.local;
+        let mut was_armed = false;
         loop {
             server.poll();
+            let armed = server.is_armed();
+            if was_armed && !armed {
+                defmt::info!("off");
+            }
+            was_armed = armed;
             while server.is_ready()
                 && let Some(received) = arrived.dequeue()
             {

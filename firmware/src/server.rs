@@ -81,6 +81,11 @@ impl<'q, F: NorFlash> Server<'q, F> {
         self.slots.into_memory()
     }
 
+    /// Whether current may flow.
+    pub fn is_armed(&self) -> bool {
+        self.gate.is_open()
+    }
+
     /// Whether a byte can be taken: not before the request before it is answered.
     pub fn is_ready(&self) -> bool {
         self.waiting == Waiting::No && self.has_room()
@@ -88,7 +93,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
 
     /// Takes a byte from the line.
     pub fn receive(&mut self, byte: u8) {
-        let may_begin = !self.gate.is_open();
+        let may_begin = !self.is_armed();
         let Some(received) = self.receiver.push(byte) else { return };
         let sequence = received.map_or(0, |frame| frame.sequence);
         match self.session.admit(received, may_begin) {
@@ -221,7 +226,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
     }
 
     fn only_disarmed(&self) -> Result<(), Refusal<'static>> {
-        if self.gate.is_open() { Err(Refusal::Armed) } else { Ok(()) }
+        if self.is_armed() { Err(Refusal::Armed) } else { Ok(()) }
     }
 
     fn info(&self) -> Info {
