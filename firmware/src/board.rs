@@ -2,7 +2,7 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | converter (MCP4921's kind) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
+//! | converter (MCP4921's kind; nothing is read back from it) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
 //! | bridge | cathodic PB0, anodic PB1 |
 //! | channels | PC0, PC1, PC2, PC3 |
 //! | link | USART1: TX PA9, RX PA10, 115,200 Bd |
@@ -56,7 +56,7 @@ pub struct Board {
     pub pulse_timer: PulseTimer,
     /// Stopped.
     pub tick_timer: TickTimer,
-    /// Stopped.
+    /// Running.
     pub watchdog: Watchdog,
     /// To the host.
     pub to_host: ToHost,
@@ -68,10 +68,10 @@ pub struct Board {
     pub boot: Fault,
 }
 
-/// Whether this is an emulator: its reset and clock control reads 0, where any real part says that the oscillator
-/// it starts from is ready.
+/// Whether this is an emulator: its reset and clock control reads 0. On a real part it cannot: a bit of the PLL's
+/// configuration is always 1.
 fn is_emulated(rcc: &RCC) -> bool {
-    rcc.cr().read().hsirdy().bit_is_clear()
+    rcc.cr().read().bits() == 0 && rcc.pllcfgr().read().bits() == 0
 }
 
 impl Board {
@@ -80,11 +80,8 @@ impl Board {
         let is_emulated = is_emulated(&device.RCC);
         let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
-        let mut rcc = if is_emulated {
-            device.RCC.constrain()
-        } else {
-            device.RCC.freeze(rcc::Config::hse(8.MHz()).sysclk(CORE_CLOCK.Hz()))
-        };
+        let mut watchdog = Watchdog::new(device.IWDG);
+        let mut rcc = device.RCC.constrain();
 
         let a = device.GPIOA.split(&mut rcc);
         let b = device.GPIOB.split(&mut rcc);
@@ -102,6 +99,14 @@ impl Board {
         ];
         let mut select: Pin = a.pa4.into_push_pull_output().erase();
         select.set_high();
+        // Without its crystal it stays here, in neutral, until the watchdog starts it again.
+        watchdog.feed(false);
+        if !is_emulated {
+            rcc = rcc.freeze(rcc::Config::hse(8.MHz()).sysclk(CORE_CLOCK.Hz()));
+            // A crystal that fails later is an interrupt that cannot be masked: a reset.
+            rcc.cr().modify(|_, w| w.csson().set_bit());
+        }
+
         let clock = a.pa5.into_alternate().speed(Speed::High);
         let data = a.pa7.into_alternate().speed(Speed::High);
         let mode = spi::Mode {
@@ -129,7 +134,7 @@ impl Board {
             stage,
             pulse_timer: PulseTimer::new(device.TIM2, &mut rcc, is_emulated),
             tick_timer: TickTimer::new(core.SYST, tick_us),
-            watchdog: Watchdog::new(device.IWDG),
+            watchdog,
             to_host: ToHost(to_host),
             from_host: FromHost(from_host),
             memory: if is_emulated {
@@ -235,6 +240,11 @@ impl PulseTimer {
         has
     }
 
+    /// Whether it has run out again, which stays to be asked.
+    pub fn is_late(&self) -> bool {
+        self.timer.sr().read().uif().bit_is_set()
+    }
+
     /// How long the step after this one lasts, µs.
     pub fn set_next(&mut self, duration_us: u32) {
         self.timer.arr().write(|w| w.arr().set(duration_us.saturating_sub(1)));
@@ -282,8 +292,9 @@ pub struct Watchdog {
     armed: Option<bool>,
 }
 
-/// While current may flow, and otherwise: erasing flash holds the core up for seconds.
-const PATIENCE_ARMED_MS: u32 = 50;
+/// While current may flow, and otherwise: erasing flash holds the core up for seconds. Its oscillator is a rough
+/// one: 10 ms are 7 to 19.
+const PATIENCE_ARMED_MS: u32 = 10;
 const PATIENCE_MS: u32 = 8_000;
 
 impl Watchdog {

@@ -12,6 +12,8 @@ pub struct Controller<'q> {
     scale: Scale,
     plans: Producer<'q, Plan<CHANNELS>>,
     gate: &'q Gate,
+    /// What the pulse timer has last been told.
+    told: Plan<CHANNELS>,
 }
 
 impl<'q> Controller<'q> {
@@ -24,7 +26,13 @@ impl<'q> Controller<'q> {
         plans: Producer<'q, Plan<CHANNELS>>,
         gate: &'q Gate,
     ) -> Self {
-        Self { supervisor: Supervisor::new(limits, tick_us, boot), scale, plans, gate }
+        Self {
+            supervisor: Supervisor::new(limits, tick_us, boot),
+            scale,
+            plans,
+            gate,
+            told: Plan::NOTHING,
+        }
     }
 
     /// Where supervision is.
@@ -57,6 +65,7 @@ impl<'q> Controller<'q> {
     /// Latches a fault, or a stop, at once. The pulse timer's interrupt is to be called for then.
     pub fn fail(&mut self, fault: Fault) {
         self.supervisor.fail(fault);
+        self.told = Plan::NOTHING;
         self.gate.set_open(self.state() == State::Armed);
     }
 
@@ -73,14 +82,21 @@ impl<'q> Controller<'q> {
         if self.state() == State::Armed {
             match Plan::new(&allowed, &self.scale) {
                 Err(_) => self.supervisor.fail(Fault::Request),
+                Ok(plan) if plan == self.told => (),
                 // The pulse timer takes several in a tick; it has stopped if there is no room.
                 Ok(plan) if self.plans.enqueue(plan).is_err() => {
                     self.supervisor.fail(Fault::Output);
                 }
-                Ok(_) => (),
+                Ok(plan) => self.told = plan,
             }
         }
         let armed = self.state() == State::Armed;
+        if armed {
+            self.gate.renew();
+        } else {
+            // The pulse timer forgets it, too.
+            self.told = Plan::NOTHING;
+        }
         self.gate.set_open(armed);
         armed
     }

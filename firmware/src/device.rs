@@ -24,6 +24,9 @@ pub const MUSCLES: usize = 2;
 /// Fibre types of each muscle.
 pub const TYPES: usize = 2;
 
+/// Ticks for which what sensors read holds.
+const READINGS_LAST: u32 = 200_000 / TICK_US;
+
 /// Rows that can wait for their tick, and their outputs for the link.
 const WAITING: usize = 64;
 
@@ -128,10 +131,14 @@ pub struct Device<'q> {
     ends: TickEnds<'q>,
     deadline: Deadline,
     muscles: [Option<Driven>; MUSCLES],
-    /// What was asked for by itself, and what rows make of it.
+    /// What was asked for by itself.
     driven: [Option<Stimulus>; CHANNELS],
-    requested: [Option<Stimulus>; CHANNELS],
+    /// What the last row asks for, of channels that electrodes of muscles have.
+    by_rows: [Option<(usize, Option<Stimulus>)>; MUSCLES],
     readings: Readings,
+    /// Ticks since these came.
+    readings_age: u32,
+    was_armed: bool,
     /// The last tick was in time.
     in_time: bool,
     ticks: u32,
@@ -147,8 +154,10 @@ impl<'q> Device<'q> {
             deadline,
             muscles: [const { None }; MUSCLES],
             driven: [None; CHANNELS],
-            requested: [None; CHANNELS],
+            by_rows: [None; MUSCLES],
             readings: Readings::default(),
+            readings_age: 0,
+            was_armed: false,
             in_time: true,
             ticks: 0,
             rows: 0,
@@ -164,18 +173,45 @@ impl<'q> Device<'q> {
         self.deadline.begin(since_due);
         self.ticks = self.ticks.wrapping_add(1);
         self.obey();
-        let checksums_are_right = self.muscles.iter().flatten().all(Driven::is_intact);
+        let mut memory_is_intact = true;
+        for driven in self.muscles.iter_mut().flatten() {
+            memory_is_intact &= driven.check();
+        }
         self.advance();
+        self.readings_age = self.readings_age.saturating_add(1);
         let observed = Observed {
             host_heard: self.controller.take_heard(),
             impedance_ohm: self.readings.impedance_ohm,
             supply_mv: self.readings.supply_mv,
-            path_um: self.readings.path_um,
+            // Old news is none.
+            path_um: self.readings.path_um.filter(|_| self.readings_age <= READINGS_LAST),
             in_time: self.in_time,
-            memory_is_intact: checksums_are_right,
+            memory_is_intact,
             output_answers: true,
         };
-        self.controller.tick(&observed, &self.requested)
+        let armed = self.controller.tick(&observed, &self.requested());
+        if core::mem::replace(&mut self.was_armed, armed) && !armed {
+            self.forget();
+        }
+        armed
+    }
+
+    /// What is asked for of all channels.
+    fn requested(&self) -> [Option<Stimulus>; CHANNELS] {
+        let mut requested = self.driven;
+        for &(channel, stimulus) in self.by_rows.iter().flatten() {
+            if let Some(place) = requested.get_mut(channel) {
+                *place = stimulus;
+            }
+        }
+        requested
+    }
+
+    /// What was asked for before a fault is not what whoever arms next asks for.
+    fn forget(&mut self) {
+        self.driven = [None; CHANNELS];
+        self.by_rows = [None; MUSCLES];
+        while self.ends.rows.dequeue().is_some() {}
     }
 
     /// The tick ends, so many counts of its timer after it was due or, if that is so, after the next one was.
@@ -185,6 +221,7 @@ impl<'q> Device<'q> {
         self.in_time = self.deadline.end(since_due, next_is_due);
         if !self.in_time {
             self.controller.fail(Fault::Deadline);
+            self.forget();
         }
         self.in_time
     }
@@ -206,6 +243,7 @@ impl<'q> Device<'q> {
                 if let Some(muscle) = self.muscles.get_mut(place) {
                     *muscle = Some(driven);
                 }
+                self.by_rows = [None; MUSCLES];
                 Outcome::Done
             }
             Order::Rest(muscles) => {
@@ -213,22 +251,23 @@ impl<'q> Device<'q> {
                 self.rows = 0;
                 // What waited belongs to the time before.
                 while self.ends.rows.dequeue().is_some() {}
-                self.requested = self.driven;
+                self.by_rows = [None; MUSCLES];
                 Outcome::Done
             }
             Order::Drive(stimuli) => {
                 self.driven = stimuli;
-                self.requested = stimuli;
                 Outcome::Done
             }
             Order::Readings(readings) => {
                 self.readings = readings;
+                self.readings_age = 0;
                 Outcome::Done
             }
             Order::Acknowledge(fault) => armed(self.controller.acknowledge(fault)),
             Order::Arm => armed(self.controller.arm()),
             Order::Stop => {
                 self.controller.fail(Fault::Stopped);
+                self.forget();
                 Outcome::Done
             }
             Order::Report => Outcome::Report(Report {
@@ -254,16 +293,12 @@ impl<'q> Device<'q> {
             return;
         }
         let Some(row) = self.ends.rows.dequeue() else { return };
-        self.requested = self.driven;
         let mut outputs = [RowOutputs::default(); MUSCLES];
-        for ((muscle, inputs), output) in self.muscles.iter_mut().zip(&row).zip(&mut outputs) {
+        let places = self.muscles.iter_mut().zip(&row).zip(&mut outputs).zip(&mut self.by_rows);
+        for (((muscle, inputs), output), by_row) in places {
             let Some(driven) = muscle else { continue };
             *output = driven.step(inputs);
-            if let Some((channel, stimulus)) = driven.stimulus(inputs)
-                && let Some(place) = self.requested.get_mut(channel)
-            {
-                *place = stimulus;
-            }
+            *by_row = driven.stimulus(inputs);
         }
         let _there_is_room = self.ends.traces.enqueue(Traced { row: self.rows, outputs });
         self.rows = self.rows.wrapping_add(1);

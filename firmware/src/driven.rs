@@ -6,8 +6,8 @@ use crate::safety::CHANNELS;
 use crate::stimulus::{Stimulus, within};
 use heapless::Vec;
 use vm_nostd::{
-    BankedMuscle, ContinuousMuscle, FesMuscle, Input, IntramuscularFes, NaturalContinuous,
-    RecruitmentCurve, State, TimeStep,
+    BankedMuscle, Checksum, ContinuousMuscle, FesMuscle, Input, IntramuscularFes,
+    NaturalContinuous, RecruitmentCurve, State, TimeStep,
 };
 
 const _: () = assert!(State::<f32, NaturalContinuous, TYPES>::WORDS <= MOST_WORDS);
@@ -19,6 +19,8 @@ pub(crate) struct Driven {
     muscle: BankedMuscle<f32, TYPES>,
     electrode: Option<(Electrode, RecruitmentCurve<f32>)>,
     checksums: [u32; 3],
+    /// They were others once. What has lost a bit is not stepped on, or its state would look right again.
+    lost: bool,
 }
 
 impl Driven {
@@ -42,7 +44,7 @@ impl Driven {
                 BankedMuscle::Fes(muscle, state)
             }
         };
-        let mut driven = Self { muscle, electrode, checksums: [0; 3] };
+        let mut driven = Self { muscle, electrode, checksums: [0; 3], lost: false };
         driven.checksums = driven.sums();
         Ok(driven)
     }
@@ -54,17 +56,21 @@ impl Driven {
             BankedMuscle::Continuous(muscle, state) => *state = muscle.rest(path_length)?,
             BankedMuscle::Fes(muscle, state) => *state = muscle.rest(path_length)?,
         }
-        rested.checksums = rested.sums();
+        rested.checksums[1] = rested.muscle.state_checksum();
         Ok(rested)
     }
 
-    /// Whether memory still holds what was left in it.
-    pub(crate) fn is_intact(&self) -> bool {
-        self.sums() == self.checksums
+    /// Whether memory has always held what was left in it.
+    pub(crate) fn check(&mut self) -> bool {
+        self.lost |= self.sums() != self.checksums;
+        !self.lost
     }
 
-    /// A tick.
+    /// A tick; nothing comes of one that has lost a bit.
     pub(crate) fn step(&mut self, inputs: &RowInputs) -> RowOutputs {
+        if self.lost {
+            return RowOutputs::default();
+        }
         let output = self.muscle.step(Input {
             activation: inputs.activation,
             path_length: inputs.path_length,
@@ -83,7 +89,7 @@ impl Driven {
     /// The channel that stimulates it, and the pulses that an input asks of it: of the amplitude that recruits
     /// as much as the input says, at its frequency.
     pub(crate) fn stimulus(&self, inputs: &RowInputs) -> Option<(usize, Option<Stimulus>)> {
-        let (electrode, curve) = self.electrode.as_ref()?;
+        let (electrode, curve) = self.electrode.as_ref().filter(|_| !self.lost)?;
         let (milliamperes, _) = curve.amplitude_for(inputs.activation, electrode.width_us.into());
         // Saturating, and 0 for what is no number.
         let frequency_tenths_pps = (inputs.stimulation_frequency * 10.0) as u16;
@@ -108,8 +114,15 @@ impl Driven {
     }
 
     fn sums(&self) -> [u32; 3] {
-        let curve = self.electrode.as_ref().map_or(0, |(_, curve)| curve.checksum());
-        [self.muscle.coefficients_checksum(), self.muscle.state_checksum(), curve]
+        let mut electrode = Checksum::EMPTY;
+        if let Some((Electrode { channel, width_us, gap_us, recovery, .. }, curve)) =
+            &self.electrode
+        {
+            electrode.add(curve.checksum());
+            electrode.add(u32::from_le_bytes([*channel, *recovery, 1, 1]));
+            electrode.add(u32::from(*width_us) << 16 | u32::from(*gap_us));
+        }
+        [self.muscle.coefficients_checksum(), self.muscle.state_checksum(), electrode.value()]
     }
 }
 

@@ -8,6 +8,8 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 pub struct Gate {
     /// The tick allows current.
     open: AtomicBool,
+    /// The tick has allowed it again.
+    renewed: AtomicBool,
     /// The output stage did not answer when it was last spoken to.
     output_failed: AtomicBool,
     /// The pulse timer did not hear of the tick for too long, or its own interrupt came too late.
@@ -20,7 +22,13 @@ impl Gate {
     /// Shut.
     pub const fn new() -> Self {
         let no = AtomicBool::new;
-        Self { open: no(false), output_failed: no(false), late: no(false), heard: no(false) }
+        Self {
+            open: no(false),
+            renewed: no(false),
+            output_failed: no(false),
+            late: no(false),
+            heard: no(false),
+        }
     }
 
     pub(crate) fn set_open(&self, open: bool) {
@@ -29,6 +37,18 @@ impl Gate {
 
     pub(crate) fn is_open(&self) -> bool {
         self.open.load(Relaxed)
+    }
+
+    pub(crate) fn renew(&self) {
+        self.renewed.store(true, Relaxed);
+    }
+
+    /// Whether the tick has allowed it since this was asked last. Only for the pulse timer, which the tick cannot
+    /// interrupt.
+    pub(crate) fn take_renewed(&self) -> bool {
+        let renewed = self.renewed.load(Relaxed);
+        self.renewed.store(false, Relaxed);
+        renewed
     }
 
     pub(crate) fn set_output_failed(&self, failed: bool) {

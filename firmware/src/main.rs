@@ -46,7 +46,7 @@ mod app {
     /// Outputs are neutral before anything else is done.
     #[init(local = [
         gate: Gate = Gate::new(),
-        plans: Queue<Plan<CHANNELS>, 8> = Queue::new(),
+        plans: Queue<Plan<CHANNELS>, 16> = Queue::new(),
         lines: Lines = Lines::new(),
         bytes: Queue<Received, WAITING> = Queue::new(),
     ])]
@@ -103,7 +103,7 @@ mod app {
         }
         let next_us = pulses.timer();
         pulse_timer.set_next(next_us);
-        if pulse_timer.has_run_out() {
+        if pulse_timer.is_late() {
             pulses.overran();
         }
     }
@@ -166,6 +166,20 @@ mod app {
             }
         }
     }
+}
+
+/// What the core cannot go on after, in whatever it was doing.
+#[cortex_m_rt::exception]
+#[allow(unsafe_code)]
+unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
+    board::reset()
+}
+
+/// What nobody has asked for; a crystal that has failed is among it.
+#[cortex_m_rt::exception]
+#[allow(unsafe_code)]
+unsafe fn DefaultHandler(_: i16) {
+    board::reset()
 }
 
 /// Starts again: everything is off at boot.

@@ -79,11 +79,32 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         converter.and(pins)
     }
 
-    fn drive(&mut self, channel: usize, phase: Phase) -> Result<(), OutputError> {
-        if self.connected != Some((channel, phase.direction)) {
-            self.connect(channel, phase.direction)?;
+    /// Whether a channel is connected to the source.
+    pub fn is_connected(&self) -> bool {
+        self.connected.is_some()
+    }
+
+    /// No current, and both sides of the bridge low: the channel that was connected stays so, and what charge is
+    /// on its electrodes flows off. [`neutral`](Self::neutral) is to follow.
+    pub fn discharge(&mut self) -> Result<(), OutputError> {
+        self.connected = None;
+        let converter = self.convert(0);
+        let mut pins = Ok(());
+        for pin in [&mut self.bridge.cathodic, &mut self.bridge.anodic] {
+            if pin.set_low().is_err() {
+                pins = Err(OutputError::Pin);
+            }
         }
-        self.convert(phase.counts)
+        converter.and(pins)
+    }
+
+    /// A phase with current is never one that switches: its first word is its only one.
+    fn drive(&mut self, channel: usize, phase: Phase) -> Result<(), OutputError> {
+        if self.connected == Some((channel, phase.direction)) {
+            return self.convert(phase.counts);
+        }
+        self.connect(channel, phase.direction)?;
+        if phase.counts > 0 { self.convert(phase.counts) } else { Ok(()) }
     }
 
     /// Connects a channel in a direction, without current while anything switches.
@@ -99,9 +120,13 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         };
         // Never both high: that would connect the source to itself.
         off.set_low().map_err(|_| OutputError::Pin)?;
-        for (index, pin) in self.channels.iter_mut().enumerate() {
-            let set = if index == channel { pin.set_high() } else { pin.set_low() };
-            set.map_err(|_| OutputError::Pin)?;
+        // All others are off before one is on.
+        for (_, pin) in self.channels.iter_mut().enumerate().filter(|(index, _)| *index != channel)
+        {
+            pin.set_low().map_err(|_| OutputError::Pin)?;
+        }
+        if let Some(pin) = self.channels.get_mut(channel) {
+            pin.set_high().map_err(|_| OutputError::Pin)?;
         }
         on.set_high().map_err(|_| OutputError::Pin)?;
         self.connected = Some((channel, direction));

@@ -15,15 +15,23 @@ pub struct Pulses<'q, D, P> {
     schedule: Schedule<CHANNELS>,
     plans: Consumer<'q, Plan<CHANNELS>>,
     gate: &'q Gate,
-    /// For how long a plan holds, µs.
+    /// For how long a tick's permission holds, µs.
     patience_us: u32,
-    /// Since the last plan, µs.
+    /// Since the last one, µs.
     age_us: u32,
+    /// A pulse is being put out.
+    pulsing: bool,
     /// What the timer's next interrupt begins.
     next: Step,
+    /// For how long electrodes of a pulse that was cut short stay connected to each other, µs; none if there are
+    /// no such.
+    discharge_us: Option<u32>,
 }
 
-/// Ticks that a plan holds for: the tick sends one each time, and one that does not end in time has sent none.
+/// So long: ten time constants of 1 µF and 2 kΩ.
+const DISCHARGE_US: u32 = 20_000;
+
+/// Ticks that a permission holds for: each tick gives one, but for one that hangs.
 const PATIENCE_TICKS: u32 = 2;
 
 impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
@@ -39,7 +47,17 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     ) -> Self {
         let patience_us = PATIENCE_TICKS * tick_us;
         let schedule = Schedule::new();
-        Self { stage, schedule, plans, gate, patience_us, age_us: 0, next: Step::IDLE }
+        Self {
+            stage,
+            schedule,
+            plans,
+            gate,
+            patience_us,
+            age_us: 0,
+            pulsing: false,
+            next: Step::IDLE,
+            discharge_us: None,
+        }
     }
 
     /// The timer has run out and counts the next step already: puts that out, and returns how long the step
@@ -48,12 +66,26 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     ///
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
+        // Shut: the step that was foreseen does not begin.
+        if !self.gate.is_open() {
+            self.halt();
+        }
         let step = self.next;
+        self.pulsing = step.output.is_some();
         if self.stage.apply(&step).is_err() {
             self.fail();
         }
+        self.flow_off(&step);
         self.age_us = self.age_us.saturating_add(step.duration_us);
-        self.attend();
+        if self.gate.take_renewed() {
+            self.age_us = 0;
+        }
+        // Plans are long to read: not while a phase is being timed.
+        if step.output.is_none() {
+            while let Some(plan) = self.plans.dequeue() {
+                self.schedule.follow(&plan);
+            }
+        }
         if self.age_us > self.patience_us && !self.schedule.is_idle() {
             self.gate.set_late(true);
             self.halt();
@@ -62,22 +94,34 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         self.next.duration_us
     }
 
-    /// The tick has something to say that cannot wait; also what the timer does after every step.
+    /// The tick has something to say that cannot wait.
     pub fn attend(&mut self) {
-        while let Some(plan) = self.plans.dequeue() {
-            self.schedule.follow(&plan);
-            self.age_us = 0;
-        }
-        // Shut after a plan: then it was shut later.
         if !self.gate.is_open() {
             self.halt();
         }
     }
 
-    /// The timer ran out again before its interrupt was through: a phase has not lasted as long as it should.
+    /// Ends a discharge when its time is over, or with the next pulse.
+    fn flow_off(&mut self, step: &Step) {
+        let Some(left_us) = self.discharge_us else { return };
+        let left_us = left_us.saturating_sub(step.duration_us);
+        if step.output.is_some() {
+            self.discharge_us = None;
+        } else if left_us > 0 {
+            self.discharge_us = Some(left_us);
+        } else {
+            self.discharge_us = None;
+            self.gate.set_output_failed(self.stage.neutral().is_err());
+        }
+    }
+
+    /// The timer ran out again before its interrupt was through: in a pulse, a phase does not last as long as it
+    /// should. Between pulses it may.
     pub fn overran(&mut self) {
-        self.gate.set_late(true);
-        self.halt();
+        if self.pulsing {
+            self.gate.set_late(true);
+            self.halt();
+        }
     }
 
     fn fail(&mut self) {
@@ -85,10 +129,18 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         self.gate.set_output_failed(true);
     }
 
-    /// Neutral, and nothing comes after it.
+    /// No current, and nothing comes after it.
     fn halt(&mut self) {
         self.schedule.halt();
         self.next = Step::IDLE;
-        self.gate.set_output_failed(self.stage.neutral().is_err());
+        while self.plans.dequeue().is_some() {}
+        if self.stage.is_connected() {
+            self.discharge_us = Some(DISCHARGE_US);
+        }
+        let done = match self.discharge_us {
+            Some(_) => self.stage.discharge(),
+            None => self.stage.neutral(),
+        };
+        self.gate.set_output_failed(done.is_err());
     }
 }

@@ -35,7 +35,8 @@ pub struct Limits {
     pub session_ms: u32,
     /// Longest silence of the host, ms.
     pub silence_ms: u32,
-    /// Of each electrode that stimulates, Ω: below is a short, above an electrode that has come off.
+    /// Of each electrode that stimulates and was measured, Ω: below is a short, above an electrode that has come
+    /// off. Measuring takes pulses, so that one that was not measured yet is let pass.
     pub impedance_ohm: (u32, u32),
     /// mV.
     pub supply_mv: (u32, u32),
@@ -43,7 +44,7 @@ pub struct Limits {
     pub path_um: (i32, i32),
     /// How fast that may move, mm/s.
     pub path_speed_mm_s: u32,
-    /// How long that may stay the same to the µm while there is stimulation, ms: a sensor has noise.
+    /// How long that may stay the same to the µm, ms of stimulation: a sensor has noise.
     pub stuck_ms: u32,
 }
 
@@ -114,6 +115,13 @@ pub enum Fault {
     Stopped,
 }
 
+impl Fault {
+    /// May have been there for a tick only, and is not to be missed for that: arming looks at the last tick.
+    fn is_of_a_moment(self) -> bool {
+        matches!(self, Self::Checksum | Self::Deadline | Self::Output)
+    }
+}
+
 /// What a tick sees.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
@@ -175,8 +183,8 @@ pub struct Supervisor {
     session_us: u32,
     stuck_us: u32,
     path_before: Option<i32>,
-    /// How far each amplitude has risen, millionths of µA.
-    risen: [u64; CHANNELS],
+    /// How far each amplitude has risen, millionths of µA, and with which width.
+    risen: [(u64, u16); CHANNELS],
 }
 
 /// Nothing on any channel.
@@ -195,7 +203,7 @@ impl Supervisor {
             session_us: 0,
             stuck_us: 0,
             path_before: None,
-            risen: [0; CHANNELS],
+            risen: [(0, 0); CHANNELS],
         }
     }
 
@@ -229,7 +237,7 @@ impl Supervisor {
         self.state = State::Armed;
         self.session_us = 0;
         self.stuck_us = 0;
-        self.risen = [0; CHANNELS];
+        self.risen = [(0, 0); CHANNELS];
         Ok(())
     }
 
@@ -252,6 +260,11 @@ impl Supervisor {
                 self.slowed(requested)
             }
             (State::Armed, Some(fault)) => self.latch(fault),
+            (State::Acknowledged { fault, .. }, Some(other))
+                if other != fault && other.is_of_a_moment() =>
+            {
+                self.latch(other)
+            }
             (State::Acknowledged { left_us: 0, fault }, _) => self.latch(fault),
             (State::Acknowledged { left_us, fault }, _) => {
                 let left_us = left_us.saturating_sub(self.tick_us);
@@ -262,9 +275,9 @@ impl Supervisor {
         }
     }
 
-    /// Latches a fault that somebody else has found.
+    /// Latches a fault that somebody else has found, unless one is latched already.
     pub fn fail(&mut self, fault: Fault) {
-        if self.state == State::Armed {
+        if !matches!(self.state, State::Latched(_)) {
             self.latch(fault);
         }
     }
@@ -302,7 +315,10 @@ impl Supervisor {
         let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
         self.path_before = Some(path);
         let (least, most) = self.limits.path_um;
-        count(&mut self.stuck_us, stimulates && moved == 0, self.tick_us);
+        // Pauses of stimulation do not count, and do not make a sensor work.
+        if moved > 0 || stimulates {
+            count(&mut self.stuck_us, moved == 0, self.tick_us);
+        }
         // mm/s times µs are thousandths of µm.
         let most_moved = u64::from(self.limits.path_speed_mm_s) * u64::from(self.tick_us) / 1000;
         if !(least..=most).contains(&path) {
@@ -343,11 +359,17 @@ impl Supervisor {
     /// The request, with amplitudes that have risen as far as they may.
     fn slowed(&mut self, requested: &[Option<Stimulus>; CHANNELS]) -> [Option<Stimulus>; CHANNELS] {
         let mut allowed = *requested;
-        for (stimulus, risen) in allowed.iter_mut().zip(&mut self.risen) {
+        for (stimulus, (risen, width_us)) in allowed.iter_mut().zip(&mut self.risen) {
             let Some(stimulus) = stimulus else {
                 *risen = 0;
                 continue;
             };
+            // Charge stimulates: a pulse that becomes wider becomes weaker first.
+            let wider = stimulus.width_us.max(1);
+            if wider > *width_us {
+                *risen = *risen * u64::from(*width_us) / u64::from(wider);
+            }
+            *width_us = wider;
             // In a tick of t µs there are f t/10^7 pulses, f being in tenths.
             let rise = u64::from(self.limits.rise_ua)
                 * u64::from(stimulus.frequency_tenths_pps)

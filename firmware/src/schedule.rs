@@ -1,8 +1,8 @@
 //! Which channel's pulse comes when: one at a time, the one that is due first, none cut short.
 //!
 //! Driven by a hardware timer: [`Schedule::advance`] says what to put out and when to be called again. A pulse that
-//! is due while another is running starts when that has ended, so that it is late by at most one pulse of every
-//! other channel; the one after it is due as if it had not been late.
+//! is due while another is running starts when that has ended: it waits for at most one pulse of every other channel.
+//! The one after it is due as if it had not been late, but never closer than half a period.
 
 use crate::plan::{Plan, Train};
 use crate::stimulus::LEAST_PHASE_US;
@@ -49,6 +49,8 @@ struct Running {
 pub struct Schedule<const CHANNELS: usize> {
     channels: [Option<Channel>; CHANNELS],
     running: Option<Running>,
+    /// A pulse has ended, and nothing is put out for the shortest of steps: there is a time for new plans.
+    rests: bool,
 }
 
 impl<const CHANNELS: usize> Default for Schedule<CHANNELS> {
@@ -60,7 +62,7 @@ impl<const CHANNELS: usize> Default for Schedule<CHANNELS> {
 impl<const CHANNELS: usize> Schedule<CHANNELS> {
     /// No channel does anything.
     pub const fn new() -> Self {
-        Self { channels: [None; CHANNELS], running: None }
+        Self { channels: [None; CHANNELS], running: None, rests: false }
     }
 
     /// Follows another plan from each channel's next pulse on. A pulse that is running ends as it began.
@@ -93,7 +95,20 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
 
     /// What is put out now, and for how long. To be called when the last step has lasted as long as it said.
     pub fn advance(&mut self) -> Step {
-        let step = self.phase().unwrap_or_else(|| self.start());
+        let step = match self.phase() {
+            Some(step) => {
+                self.rests = true;
+                step
+            }
+            None if core::mem::take(&mut self.rests) => {
+                Step { output: None, duration_us: LEAST_PHASE_US }
+            }
+            None => {
+                let step = self.start();
+                self.rests = step.output.is_some();
+                step
+            }
+        };
         for channel in self.channels.iter_mut().flatten() {
             // A step is short, and a pulse is late by less than a second.
             channel.due_us = channel.due_us.saturating_sub(step.duration_us as i32);
@@ -126,21 +141,29 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
 
     /// The first phase of the pulse that is due first, or nothing until one is.
     fn start(&mut self) -> Step {
-        let of_channel = |(index, channel): (usize, &Option<Channel>)| {
-            channel.and_then(|one| one.pulse.map(|pulse| (one.due_us, index, pulse)))
-        };
-        let all = self.channels.iter().enumerate().filter_map(of_channel);
-        match all.min_by_key(|(due_us, index, _)| (*due_us, *index)) {
-            Some((due_us, channel, pulse)) if due_us <= 0 => {
-                if let Some(Some(one)) = self.channels.get_mut(channel) {
-                    one.due_us += one.period_us as i32;
+        let mut first: Option<(i32, usize)> = None;
+        for (index, channel) in self.channels.iter().enumerate() {
+            if let Some(Channel { pulse: Some(_), due_us, .. }) = channel
+                && first.is_none_or(|(earliest_us, _)| *due_us < earliest_us)
+            {
+                first = Some((*due_us, index));
+            }
+        }
+        match first {
+            Some((due_us, channel)) if due_us <= 0 => {
+                if let Some(Some(one)) = self.channels.get_mut(channel)
+                    && let Some(pulse) = one.pulse
+                {
+                    // What was late makes up for it in part: two pulses are never closer than half a period.
+                    let period_us = one.period_us as i32;
+                    one.due_us = (one.due_us + period_us).max(period_us / 2);
+                    let left_us = duration(&pulse, 0);
+                    self.running = Some(Running { channel, pulse, phase: 0, left_us });
                 }
-                let left_us = duration(&pulse, 0);
-                self.running = Some(Running { channel, pulse, phase: 0, left_us });
                 self.phase().unwrap_or(Step::IDLE)
             }
             // Not exactly when it is due, if that is very soon: a step has its shortest length.
-            Some((due_us, ..)) => {
+            Some((due_us, _)) => {
                 let duration_us = (due_us as u32).clamp(LEAST_PHASE_US, Step::IDLE.duration_us);
                 Step { output: None, duration_us }
             }

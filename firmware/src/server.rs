@@ -66,7 +66,11 @@ impl<'q, F: NorFlash> Server<'q, F> {
             sequence: 0,
             out: Deque::new(),
         };
-        let stored = server.slots.load().and_then(|stored| postcard::from_bytes(stored).ok());
+        let stored =
+            server.slots.load().and_then(|stored| match postcard::take_from_bytes(stored) {
+                Ok((uploads, [])) => Some(uploads),
+                _ => None,
+            });
         server.uploads = stored.unwrap_or_default();
         for (upload, built) in server.uploads.iter().zip(&mut server.built) {
             *built = upload.as_ref().and_then(|upload| Driven::build(upload, step).ok());

@@ -7,6 +7,11 @@ use serde::{Deserialize, Serialize};
 /// through by then.
 pub const LEAST_PHASE_US: u32 = 20;
 
+/// Without current before anything is switched, and after it, µs: converters and switches have settled by then.
+pub(crate) const SETTLE_US: u16 = LEAST_PHASE_US as u16;
+/// Shortest gap, µs: settling, and turning the bridge.
+const LEAST_GAP_US: u32 = 2 * LEAST_PHASE_US;
+
 /// Pulses of one channel, until it is told otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stimulus {
@@ -14,7 +19,7 @@ pub struct Stimulus {
     pub amplitude_ua: u32,
     /// Of the phase that stimulates, µs; [`LEAST_PHASE_US`] to 1,000.
     pub width_us: u16,
-    /// Between the phases, µs; none, or [`LEAST_PHASE_US`] to 200.
+    /// Between the phases, µs; 40 to 200.
     pub gap_us: u16,
     /// Pulses in ten seconds; 10 (one a second) to 5,000.
     pub frequency_tenths_pps: u16,
@@ -72,10 +77,11 @@ impl Stimulus {
         10_000_000 / u32::from(self.frequency_tenths_pps.max(1))
     }
 
-    /// From the start of a pulse to its end, µs.
+    /// From the start of a pulse until another may begin, settling included, µs.
     pub fn duration_us(&self) -> u32 {
         let width = u32::from(self.width_us);
-        width + u32::from(self.gap_us) + width * u32::from(self.recovery)
+        let settling = 3 * u32::from(SETTLE_US);
+        width + u32::from(self.gap_us) + width * u32::from(self.recovery) + settling
     }
 
     /// Whether a stimulator of that scale can do it; the error names the field, its value and the limit it
@@ -90,9 +96,7 @@ impl Stimulus {
     /// The same of what does not change from pulse to pulse: width, gap and recovery.
     pub(crate) fn validate_shape(&self) -> Result<(), StimulusError> {
         within("width_us", self.width_us.into(), LEAST_PHASE_US, 1000)?;
-        if self.gap_us > 0 {
-            within("gap_us", self.gap_us.into(), LEAST_PHASE_US, 200)?;
-        }
+        within("gap_us", self.gap_us.into(), LEAST_GAP_US, 200)?;
         within("recovery", self.recovery.into(), 1, 8)
     }
 }

@@ -4,13 +4,15 @@
 //! does not count, writes its content and then its header; only that makes it the newer one. Wherever power is
 //! lost, the slot that counted before still does.
 
+use crate::link::VERSION;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::NorFlash;
 
 /// Longest content, bytes.
 pub const MOST_STORED: usize = 2048;
 const HEADER: usize = 16;
-const MAGIC: u32 = 0x4D53_4D56;
+/// Whose it is, and of which messages: other versions lay a muscle out in another way.
+const MAGIC: u32 = 0x4D53_4D00 + VERSION as u32;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Memory did not take or keep it.

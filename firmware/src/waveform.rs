@@ -3,8 +3,12 @@
 //! The phase that stimulates is cathodic, `counts` for `width`; after the gap, the other takes the charge back,
 //! `recovery` times weaker and as many times longer. Counts are a whole multiple of `recovery`, so that the
 //! weaker phase has a whole number of them, and both phases have the same counts times µs.
+//!
+//! Switches take time, and so does a converter: before, between and after the two are phases without current in
+//! which channel and direction are switched. Each phase with current then begins and ends with one word to the
+//! converter, as the first thing a step does, and lasts as long as it should, however long words and switches take.
 
-use crate::stimulus::{Scale, Stimulus, StimulusError};
+use crate::stimulus::{SETTLE_US, Scale, Stimulus, StimulusError};
 
 /// Where a current flows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,11 +30,11 @@ pub struct Phase {
     pub duration_us: u16,
 }
 
-/// A pulse: stimulation, gap, recovery.
+/// A pulse: settling, stimulation, gap, turning of the bridge (the gap's last part), recovery, settling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pulse {
-    /// In their order; the gap may be of no duration.
-    pub phases: [Phase; 3],
+    /// In their order.
+    pub phases: [Phase; 6],
 }
 
 impl Pulse {
@@ -46,9 +50,13 @@ impl Pulse {
         let phase = |counts, direction, duration_us| Phase { counts, direction, duration_us };
         Ok(Self {
             phases: [
+                phase(0, Direction::Cathodic, SETTLE_US),
                 phase(weak * recovery, Direction::Cathodic, stimulus.width_us),
-                phase(0, Direction::Cathodic, stimulus.gap_us),
+                // Validation has seen to it that there is as much, and more.
+                phase(0, Direction::Cathodic, stimulus.gap_us.saturating_sub(SETTLE_US)),
+                phase(0, Direction::Anodic, SETTLE_US),
                 phase(weak, Direction::Anodic, stimulus.width_us * recovery),
+                phase(0, Direction::Anodic, SETTLE_US),
             ],
         })
     }

@@ -42,7 +42,7 @@ impl<F: NorFlash> InProcess<F> {
     pub fn boot_with(memory: F, limits: Limits) -> Self {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
-        let plans: &'static mut Queue<Plan<CHANNELS>, 4> = Box::leak(Box::default());
+        let plans: &'static mut Queue<Plan<CHANNELS>, 16> = Box::leak(Box::default());
         let gate: &'static Gate = Box::leak(Box::default());
         let lines: &'static mut Lines = Box::leak(Box::default());
         let (give, take) = plans.split();
@@ -64,12 +64,14 @@ impl<F: NorFlash> InProcess<F> {
     /// A tick, and all that pulse timer and link do until the next one.
     pub fn tick(&mut self) {
         if !self.device.tick(0) || !self.device.finish(100, false) {
+            self.electrodes.borrow_mut().words = 0;
             self.pulses.attend();
         }
         self.ticks += 1;
         self.see();
         while self.timer < self.ticks * TICK {
             self.timer += self.step_us;
+            self.electrodes.borrow_mut().words = 0;
             self.step_us = self.pulses.timer();
             self.see();
         }

@@ -26,6 +26,10 @@ pub struct Electrodes {
     pub charges: [i64; CHANNELS],
     /// What must not be.
     pub problems: Vec<String>,
+    /// Words to the converter since a step began.
+    pub words: u32,
+    /// Until all were low once, several channels may be connected.
+    pub starting: bool,
     /// Converter or pins that do not answer any more.
     pub broken_converter: bool,
     /// See `broken_converter`.
@@ -71,6 +75,11 @@ impl Pin {
         if changed && electrodes.counts != 0 && !electrodes.broken_converter {
             electrodes.problems.push(format!("{:?} switched under current", self.1));
         }
+        let connected = electrodes.channels.iter().filter(|connected| **connected).count();
+        electrodes.starting &= connected > 0;
+        if connected > 1 && !electrodes.starting && !electrodes.broken_pins {
+            electrodes.problems.push("two channels at once".to_owned());
+        }
         if electrodes.cathodic && electrodes.anodic {
             electrodes.problems.push("both sides of the bridge".to_owned());
         }
@@ -109,7 +118,16 @@ impl SpiDevice for Converter {
             if high & 0xf0 != 0x30 {
                 electrodes.problems.push(format!("control bits {high:#x}"));
             }
-            electrodes.counts = u16::from_be_bytes([high & 0x0f, low]);
+            // A word takes time: a current that begins or ends with any but a step's first lasts too long or too
+            // short.
+            let counts = u16::from_be_bytes([high & 0x0f, low]);
+            if electrodes.words > 0 && counts != electrodes.counts {
+                electrodes
+                    .problems
+                    .push("a current that does not begin or end with its step".to_owned());
+            }
+            electrodes.words += 1;
+            electrodes.counts = counts;
         }
         Ok(())
     }
@@ -122,8 +140,12 @@ pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 pub fn stage() -> (Stage, Shared) {
     let shared = Shared::default();
     // As after a reset that came at the worst moment.
-    *shared.borrow_mut() =
-        Electrodes { cathodic: true, channels: [true; CHANNELS], ..Electrodes::default() };
+    *shared.borrow_mut() = Electrodes {
+        cathodic: true,
+        channels: [true; CHANNELS],
+        starting: true,
+        ..Electrodes::default()
+    };
     let pin = |place| Pin(Rc::clone(&shared), place);
     let bridge = Bridge { cathodic: pin(Place::Cathodic), anodic: pin(Place::Anodic) };
     let channels = std::array::from_fn(|index| pin(Place::Channel(index)));

@@ -40,7 +40,7 @@ impl Bench {
     fn new(boot: Fault) -> Self {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
-        let queue: &'static mut Queue<Plan<CHANNELS>, 4> = Box::leak(Box::default());
+        let queue: &'static mut Queue<Plan<CHANNELS>, 16> = Box::leak(Box::default());
         let gate: &'static Gate = Box::leak(Box::default());
         let (give, take) = queue.split();
         Self {
@@ -64,6 +64,31 @@ impl Bench {
 
     /// The same: the most counts while a way for the current is open.
     fn counts(&mut self) -> u16 {
+        self.control();
+        let mut most = self.flowing();
+        while self.timer < self.tick * TICK {
+            self.run_out();
+            most = most.max(self.flowing());
+        }
+        most
+    }
+
+    /// Until the middle of a phase with current, ticks as they come.
+    fn until_current(&mut self) {
+        for _ in 0..10_000 {
+            if self.electrodes.borrow().counts > 0 {
+                return;
+            }
+            if self.timer >= self.tick * TICK {
+                self.control();
+            }
+            self.run_out();
+        }
+        panic!("no current");
+    }
+
+    /// The tick itself.
+    fn control(&mut self) {
         let mut observed = Observed {
             host_heard: self.tick.is_multiple_of(20),
             impedance_ohm: [Some(900), Some(1100), None, None],
@@ -79,19 +104,15 @@ impl Bench {
             inject(&mut observed, &mut request, self.tick - self.injected);
         }
         if !self.hangs && !self.controller.tick(&observed, &request) {
+            self.electrodes.borrow_mut().words = 0;
             self.pulses.attend();
         }
         self.tick += 1;
-        let mut most = self.flowing();
-        while self.timer < self.tick * TICK {
-            self.run_out();
-            most = most.max(self.flowing());
-        }
-        most
     }
 
     /// The pulse timer runs out.
     fn run_out(&mut self) {
+        self.electrodes.borrow_mut().words = 0;
         self.timer += self.step_us;
         self.step_us = self.pulses.timer();
     }
@@ -311,9 +332,7 @@ fn amplitudes_rise_by_no_more_per_pulse_than_they_may_and_fall_at_once() {
 fn an_output_that_stops_answering_is_seen_by_the_next_step() {
     for break_it in [0, 1] {
         let mut bench = Bench::running();
-        while bench.electrodes.borrow().counts == 0 {
-            bench.run_out();
-        }
+        bench.until_current();
         {
             let mut electrodes = bench.electrodes.borrow_mut();
             electrodes.broken_converter = break_it == 0;
@@ -345,10 +364,7 @@ fn an_output_that_stops_answering_is_seen_by_the_next_step() {
 #[test]
 fn a_tick_that_hangs_ends_in_neutral_within_three_ticks() {
     let mut bench = Bench::running();
-    // In the middle of a pulse's first phase, if it can be.
-    while bench.electrodes.borrow().counts == 0 {
-        bench.tick();
-    }
+    bench.until_current();
     bench.hangs = true;
     bench.flows(3);
     assert_eq!(bench.flowing(), 0);
@@ -365,10 +381,57 @@ fn a_tick_that_hangs_ends_in_neutral_within_three_ticks() {
 #[test]
 fn a_pulse_timer_that_overruns_is_a_fault() {
     let mut bench = Bench::running();
+    bench.until_current();
+    bench.electrodes.borrow_mut().words = 0;
     bench.pulses.overran();
     assert_eq!(bench.flowing(), 0);
     assert!(!bench.flows(10));
     assert_eq!(bench.controller.state(), State::Latched(Fault::Deadline));
+}
+
+/// A pulse that becomes wider becomes weaker first: its charge rises by no more per pulse than an amplitude's may.
+#[test]
+fn a_wider_pulse_is_no_way_round_the_rise() {
+    let mut bench = Bench::running();
+    let (mut before, mut width) = (0_u32, 20);
+    for tick in 0..600 {
+        if tick == 300 {
+            width = 400;
+        }
+        bench.inject = Some(if width == 20 {
+            |_, r, _| *r = [Some(Stimulus { width_us: 20, ..stimulus(20_000) }), None, None, None]
+        } else {
+            |_, r, _| *r = [Some(Stimulus { width_us: 400, ..stimulus(20_000) }), None, None, None]
+        });
+        let charge = u32::from(bench.counts()) * width;
+        if charge > 0 {
+            // 2 mA for 400 µs in counts, and what rounding adds.
+            assert!(charge <= before + (2 * 4095 / 50 + 2) * 400, "{charge} after {before}");
+            before = charge;
+        }
+    }
+    assert!(before >= 19 * 4095 / 50 * 400, "{before}");
+}
+
+/// Pauses of stimulation do not make a stuck sensor work.
+#[test]
+fn a_sensor_that_is_stuck_is_seen_in_spite_of_pauses() {
+    let mut bench = Bench::running();
+    bench.inject = Some(|o, r, tick| {
+        o.path_um = Some(160_001);
+        if tick % 1000 < 500 {
+            *r = [None; CHANNELS];
+        }
+    });
+    bench.injected = bench.tick;
+    let ticks = (0..10_000).take_while(|_| {
+        bench.tick();
+        bench.controller.state() == State::Armed
+    });
+    // More than two seconds of stimulation, every other half second: a little into the fifth.
+    let ticks = ticks.count();
+    assert!((4_500..=4_502).contains(&ticks), "{ticks}");
+    assert_eq!(bench.controller.state(), State::Latched(Fault::SensorStuck));
 }
 
 /// Limits in time are times, whatever the tick rate.

@@ -115,7 +115,7 @@ fn an_activation_becomes_pulses_once_somebody_has_armed() {
         chronaxie: 200e-6,
         slope: 2.0,
     };
-    let electrode = Electrode { channel: 2, curve, width_us: 200, gap_us: 0, recovery: 1 };
+    let electrode = Electrode { channel: 2, curve, width_us: 200, gap_us: 40, recovery: 1 };
     let upload = Upload { electrode: Some(electrode), ..fes() };
     host.order(&Request::Upload { place: 1, upload }).expect("a muscle");
     host.order(&Request::Rest([None, Some(0.16)])).expect("a path");
@@ -182,7 +182,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
         chronaxie: 200e-6,
         slope: 2.0,
     };
-    let electrode = Electrode { channel: 4, curve, width_us: 200, gap_us: 0, recovery: 1 };
+    let electrode = Electrode { channel: 4, curve, width_us: 200, gap_us: 40, recovery: 1 };
     let with = |electrode| Request::Upload {
         place: 0,
         upload: Upload { electrode: Some(electrode), ..fes() },
@@ -240,7 +240,7 @@ fn what_is_asked_of_supervision_is_answered_by_it() {
     let stimulus = Stimulus {
         amplitude_ua: Limits::SURFACE.amplitude_ua + 1,
         width_us: 200,
-        gap_us: 0,
+        gap_us: 40,
         frequency_tenths_pps: 400,
         recovery: 1,
     };
@@ -248,6 +248,60 @@ fn what_is_asked_of_supervision_is_answered_by_it() {
     host.line().tick();
     assert_eq!(report(&mut host).state, State::Latched(Fault::Amplitude));
     assert_eq!(host.line().flowed(), 0);
+}
+
+/// What was asked for before a fault is not what whoever arms next asks for.
+#[test]
+fn nothing_that_was_asked_for_outlasts_a_fault() {
+    let mut host = booted();
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 40,
+        frequency_tenths_pps: 400,
+        recovery: 1,
+    };
+    arm(&mut host, Fault::Boot);
+    host.order(&Request::Drive([Some(stimulus), None, None, None])).expect("taken");
+    let keep = |host: &mut Host| {
+        for index in 0..40 {
+            let path_um = Some(160_000 + index % 2);
+            host.order(&Request::Readings(Readings { path_um, ..READINGS })).expect("readings");
+        }
+        host.line().flowed()
+    };
+    assert!(keep(&mut host) > 0);
+    host.order(&Request::Stop).expect("a stop");
+    (0..3).for_each(|_| host.line().tick());
+    host.line().flowed();
+    assert_eq!(keep(&mut host), 0);
+    arm(&mut host, Fault::Stopped);
+    assert_eq!(keep(&mut host), 0, "a stimulus that nobody has asked for");
+    // A stop between the two steps of arming counts, too.
+    host.order(&Request::Stop).expect("a stop");
+    host.order(&Request::Acknowledge(Fault::Stopped)).expect("its name");
+    host.order(&Request::Stop).expect("a stop");
+    assert!(host.order(&Request::Arm).is_err());
+    assert_eq!(report(&mut host).state, State::Latched(Fault::Stopped));
+}
+
+/// A host that keeps itself heard, and has nothing to say of its sensors.
+#[test]
+fn readings_that_are_old_are_none() {
+    let mut host = booted();
+    arm(&mut host, Fault::Boot);
+    let before = report(&mut host).ticks;
+    let keep = |host: &mut Host, until: u32| {
+        loop {
+            let report = report(host);
+            if report.ticks - before >= until {
+                return report.state;
+            }
+        }
+    };
+    assert_eq!(keep(&mut host, 180), State::Armed);
+    assert_eq!(keep(&mut host, 210), State::Latched(Fault::SensorMissing));
+    assert_eq!(report(&mut host).state, State::Latched(Fault::SensorMissing));
 }
 
 #[test]
@@ -427,7 +481,7 @@ fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
     let stimulus = Stimulus {
         amplitude_ua: 1000,
         width_us: 200,
-        gap_us: 0,
+        gap_us: 40,
         frequency_tenths_pps: 300,
         recovery: 1,
     };
