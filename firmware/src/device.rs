@@ -190,10 +190,15 @@ impl<'q> Device<'q> {
             output_answers: true,
         };
         let armed = self.controller.tick(&observed, &self.requested());
+        self.ended(armed);
+        armed
+    }
+
+    /// Forgets, if it was armed and is not any more.
+    fn ended(&mut self, armed: bool) {
         if core::mem::replace(&mut self.was_armed, armed) && !armed {
             self.forget();
         }
-        armed
     }
 
     /// What is asked for of all channels.
@@ -207,11 +212,14 @@ impl<'q> Device<'q> {
         requested
     }
 
-    /// What was asked for before a fault is not what whoever arms next asks for.
+    /// What was asked for before a fault is not what whoever arms next asks for. Rows that waited are gone, and
+    /// missing among the traces by their numbers.
     fn forget(&mut self) {
         self.driven = [None; CHANNELS];
         self.by_rows = [None; MUSCLES];
-        while self.ends.rows.dequeue().is_some() {}
+        while self.ends.rows.dequeue().is_some() {
+            self.rows = self.rows.wrapping_add(1);
+        }
     }
 
     /// The tick ends, so many counts of its timer after it was due or, if that is so, after the next one was.
@@ -221,7 +229,7 @@ impl<'q> Device<'q> {
         self.in_time = self.deadline.end(since_due, next_is_due);
         if !self.in_time {
             self.controller.fail(Fault::Deadline);
-            self.forget();
+            self.ended(false);
         }
         self.in_time
     }

@@ -63,7 +63,17 @@ impl<F: NorFlash> InProcess<F> {
 
     /// A tick, and all that pulse timer and link do until the next one.
     pub fn tick(&mut self) {
-        if !self.device.tick(0) || !self.device.finish(100, false) {
+        self.tick_that_takes(100, false);
+    }
+
+    /// The same, but that it ends after the next one was due.
+    pub fn tick_late(&mut self) {
+        self.tick_that_takes(10, true);
+    }
+
+    fn tick_that_takes(&mut self, counts: u32, next_is_due: bool) {
+        let armed = self.device.tick(0);
+        if !self.device.finish(counts, next_is_due) || !armed {
             self.electrodes.borrow_mut().words = 0;
             self.pulses.attend();
         }

@@ -285,6 +285,33 @@ fn nothing_that_was_asked_for_outlasts_a_fault() {
     assert_eq!(report(&mut host).state, State::Latched(Fault::Stopped));
 }
 
+/// A tick that is late while nothing is armed is no fault, and costs no row.
+#[test]
+fn a_late_tick_costs_no_row_while_nothing_is_armed() {
+    let mut host = booted();
+    host.order(&Request::Upload { place: 0, upload: fes() }).expect("a muscle");
+    host.order(&Request::Rest([Some(0.16), None])).expect("a path");
+    let rows = heapless::Vec::from_slice(&[[RowInputs::default(); MUSCLES]; 8]).expect("room");
+    host.order(&Request::Rows { first: 0, rows }).expect("room");
+    host.line().tick_late();
+    (0..20).for_each(|_| host.line().tick());
+    let report = report(&mut host);
+    assert_eq!((report.rows, report.late, report.state), (8, 1, State::Latched(Fault::Boot)));
+    let rows: Vec<u32> =
+        std::iter::from_fn(|| host.next_trace()).map(|traced| traced.row).collect();
+    assert_eq!(rows, [0, 1, 2, 3, 4, 5, 6, 7]);
+    // Armed it is, and takes those with it that waited.
+    arm(&mut host, Fault::Boot);
+    let rows = heapless::Vec::from_slice(&[[RowInputs::default(); MUSCLES]; 8]).expect("room");
+    host.order(&Request::Rows { first: 8, rows }).expect("room");
+    host.line().tick_late();
+    (0..20).for_each(|_| host.line().tick());
+    let report = self::report(&mut host);
+    assert_eq!((report.rows, report.late, report.state), (16, 2, State::Latched(Fault::Deadline)));
+    let traced = std::iter::from_fn(|| host.next_trace()).count();
+    assert!(traced < 8, "{traced} rows had their tick");
+}
+
 /// A host that keeps itself heard, and has nothing to say of its sensors.
 #[test]
 fn readings_that_are_old_are_none() {

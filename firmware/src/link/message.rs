@@ -32,7 +32,8 @@ pub enum Request {
     /// All muscles at rest on these path lengths (m), by themselves in the middle of their range; rows are counted
     /// from 0 again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
-    /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait.
+    /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. A fault, or
+    /// a stop, while armed takes with it the rows that have not had their tick.
     Rows {
         /// Number of the first.
         first: u32,
