@@ -1,6 +1,7 @@
 //! The link to a host: messages in frames over any line that carries bytes.
 //!
-//! A frame is COBS of (version, sequence number, message by postcard, CRC-32), and a zero. Nothing that arrives is
+//! A frame is COBS of (version, sequence number, message by postcard, CRC-32), and a zero. The CRC begins with the
+//! number of the session, which the device makes up when it is greeted. Nothing that arrives is
 //! acted upon but a whole frame of this version, with a good checksum, the next sequence number, and a message that
 //! was understood to its last byte; everything else is counted and answered with a named [`LinkError`].
 
@@ -8,7 +9,9 @@ mod frame;
 mod message;
 mod session;
 
-pub use frame::{Frame, MOST_CONTENT, MOST_FRAME, Receiver, VERSION, encode};
+pub use frame::{
+    Frame, MOST_CONTENT, MOST_FRAME, NO_SESSION, Receiver, SessionNumber, VERSION, encode,
+};
 pub use message::{
     Answer, Electrode, Info, MOST_ROWS, MOST_WORDS, Message, Mode, Readings, Refusal, Report,
     Request, RowInputs, RowOutputs, Traced, Upload,

@@ -23,8 +23,8 @@ mod app {
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
 
-    /// Bytes that can wait for the link.
-    const WAITING: usize = 1024;
+    /// Bytes that can wait for the link: several of the longest frames.
+    const WAITING: usize = 4096;
 
     #[shared]
     struct Shared {}

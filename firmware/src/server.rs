@@ -4,8 +4,8 @@ use crate::device::{LinkEnds, MUSCLES, Order, Outcome, Row, TYPES};
 use crate::driven::Driven;
 use crate::gate::Gate;
 use crate::link::{
-    Answer, Info, LinkError, MOST_FRAME, Message, Receiver, Refusal, Request, Session, Upload,
-    encode,
+    Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
+    Upload, encode,
 };
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
@@ -44,6 +44,8 @@ pub struct Server<'q, F> {
     /// Number of the row that is due.
     row: u32,
     sequence: u16,
+    /// How often the tick was asked for something: no two sessions begin at the same.
+    polls: u32,
     /// Bytes for the host, an answer and a message of traces at most.
     out: Deque<u8, { 2 * MOST_FRAME }>,
 }
@@ -64,6 +66,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
             waiting: Waiting::Boot,
             row: 0,
             sequence: 0,
+            polls: 0,
             out: Deque::new(),
         };
         let stored =
@@ -97,8 +100,10 @@ impl<'q, F: NorFlash> Server<'q, F> {
 
     /// Takes a byte from the line.
     pub fn receive(&mut self, byte: u8) {
-        let may_begin = !self.is_armed();
-        let Some(received) = self.receiver.push(byte) else { return };
+        // Odd, and so never the number of no session.
+        let number = self.polls.wrapping_mul(0x9E37_79B1) | 1;
+        let may_begin = (!self.is_armed()).then_some(number);
+        let Some(received) = self.receiver.push(byte, self.session.number()) else { return };
         let sequence = received.map_or(0, |frame| frame.sequence);
         match self.session.admit(received, may_begin) {
             Err(error) => self.refuse_frame(error),
@@ -114,11 +119,12 @@ impl<'q, F: NorFlash> Server<'q, F> {
     /// Bytes were lost on the line, or arrived as none.
     pub fn lost(&mut self) {
         // What has begun is broken: its checksum will say so.
-        let _not_the_end = self.receiver.push(0xff);
+        let _not_the_end = self.receiver.push(0xff, NO_SESSION);
     }
 
     /// Looks for what the tick has to say.
     pub fn poll(&mut self) {
+        self.polls = self.polls.wrapping_add(1);
         if let Some(outcome) = self.ends.outcomes.dequeue() {
             if let Waiting::Request(to) = self.waiting {
                 let answer = self.of_outcome(outcome);
@@ -235,6 +241,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
 
     fn info(&self) -> Info {
         Info {
+            session: self.session.number(),
             muscles: MUSCLES as u8,
             types: TYPES as u8,
             channels: CHANNELS as u8,
@@ -266,7 +273,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
     }
 
     fn send(&mut self, message: &Message<'_>) {
-        let Some(frame) = encode(self.sequence, message) else { return };
+        let Some(frame) = encode(NO_SESSION, self.sequence, message) else { return };
         self.sequence = self.sequence.wrapping_add(1);
         for byte in frame {
             let _there_is_room = self.out.push_back(byte);

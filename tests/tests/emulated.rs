@@ -4,7 +4,8 @@
 //! depend on how fast this host is.
 
 use firmware::link::{
-    Answer, Message, Mode, Readings, Receiver, Refusal, Report, Request, Upload, encode,
+    Answer, Message, Mode, NO_SESSION, Readings, Receiver, Refusal, Report, Request, SessionNumber,
+    Upload, encode,
 };
 use firmware::safety::{CHANNELS, Fault, NotArmed, State};
 use firmware::{MUSCLE, Stimulus};
@@ -57,6 +58,7 @@ fn traces_played_to_the_firmware_have_the_bits_of_the_hosts_run() {
 struct Machine {
     line: Emulated,
     receiver: Receiver,
+    session: SessionNumber,
     sequence: u16,
     log: tempfile::NamedTempFile,
 }
@@ -71,8 +73,20 @@ fn stimulus(amplitude_ua: u32) -> Stimulus {
 /// Messages that keep a host heard for some hundredths of a second.
 const KEPT_ALIVE: usize = 400;
 
-/// Bytes that may be on their way to the firmware, which has room for a thousand.
-const WINDOW: usize = 800;
+/// Bytes that may be on their way to the firmware, which has room for four thousand.
+const WINDOW: usize = 3600;
+
+/// A host that is there, and a sensor that works.
+fn kept_alive() -> Vec<Request> {
+    let one = |index: usize| match index % 8 {
+        0 => {
+            let path_um = Some(160_000 + i32::from(index % 16 == 0));
+            Request::Readings(Readings { path_um, ..READINGS })
+        }
+        _ => Request::KeepAlive,
+    };
+    (0..KEPT_ALIVE).map(one).collect()
+}
 
 /// Pulses of 10 mA on all channels, 400 a second.
 fn drive() -> Request {
@@ -98,8 +112,8 @@ impl Machine {
         all.extend(arguments);
         let mut client = Client::new(Emulated::run(image, &all).expect("a machine"));
         client.greet().expect("a greeting");
-        let sequence = client.sequence();
-        Self { line: client.into_line(), receiver: Receiver::new(), sequence, log }
+        let (session, sequence) = client.session();
+        Self { line: client.into_line(), receiver: Receiver::new(), session, sequence, log }
     }
 
     /// Sends requests, and returns what was said to each.
@@ -119,7 +133,7 @@ impl Machine {
             while lengths.iter().sum::<usize>() < WINDOW
                 && let Some(request) = frames.next()
             {
-                let frame = encode(self.sequence, request).expect("a frame");
+                let frame = encode(self.session, self.sequence, request).expect("a frame");
                 self.sequence = self.sequence.wrapping_add(1);
                 self.line.write_all(&frame).expect("a line");
                 lengths.push_back(frame.len());
@@ -137,7 +151,7 @@ impl Machine {
                 }
                 Err(error) => panic!("{error}"),
             }
-            let Some(frame) = self.receiver.push(byte[0]) else { continue };
+            let Some(frame) = self.receiver.push(byte[0], NO_SESSION) else { continue };
             let frame = frame.expect("a whole frame");
             match postcard::from_bytes(frame.content).expect("a message") {
                 Message::Answer { to, answer } => {
@@ -173,7 +187,7 @@ impl Machine {
     fn stimulated(&mut self, latched: Fault, then: &[Request]) -> (Report, Vec<Said>) {
         let mut requests =
             vec![Request::Readings(READINGS), drive(), Request::Acknowledge(latched), Request::Arm];
-        requests.extend(std::iter::repeat_n(Request::KeepAlive, KEPT_ALIVE));
+        requests.extend(kept_alive());
         let armed = requests.len();
         requests.push(Request::Report);
         requests.extend_from_slice(then);
@@ -266,7 +280,7 @@ fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
         pins = machine.pins();
         assert!(pins.closed > closed + 10, "{fault:?}: {pins:?}");
         assert_eq!(pins.bridge, 0, "{fault:?}");
-        machine.script(&vec![Request::KeepAlive; KEPT_ALIVE]);
+        machine.script(&kept_alive());
         // A channel whose pulse was cut short was left to discharge for a while.
         let later = machine.pins();
         assert_eq!((later.closed, later.channels), (pins.closed, 0), "{fault:?}: pulses after it");
@@ -350,7 +364,7 @@ fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     let mut machine = Machine::start(image, port.arguments());
     let mut requests =
         vec![Request::Readings(READINGS), Request::Acknowledge(Fault::Boot), Request::Arm, drive()];
-    requests.extend(std::iter::repeat_n(Request::KeepAlive, KEPT_ALIVE));
+    requests.extend(kept_alive());
     let said = machine.converse(&requests, 50);
     assert!(said.iter().all(|one| *one == Said::Done), "{said:?}");
     let mut debugger = port.attach();

@@ -1,8 +1,8 @@
 //! The link: what a host can do to a device, and what nothing on the line can.
 
 use firmware::link::{
-    Answer, Counters, Electrode, LinkError, MOST_FRAME, Message, Readings, Receiver, Report,
-    Request, RowInputs, Session, Upload, encode,
+    Answer, Counters, Electrode, LinkError, MOST_FRAME, Message, NO_SESSION, Readings, Receiver,
+    Report, Request, RowInputs, Session, SessionNumber, Upload, encode,
 };
 use firmware::safety::{CHANNELS, Fault, Limits, NotArmed, State};
 use firmware::{MUSCLE, MUSCLES, Stimulus};
@@ -25,7 +25,7 @@ fn data(name: &str) -> PathBuf {
 
 fn booted() -> Host {
     let mut host = Client::new(InProcess::boot(Memory::new()));
-    assert!(matches!(host.ask(&Request::Hello), Ok(Answer::Info(_))));
+    host.greet().expect("a greeting");
     host
 }
 
@@ -71,10 +71,23 @@ fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
 /// The comparison can fail: a device that was given another muscle.
 #[test]
 fn another_muscle_has_other_bits() {
-    struct Tampered(InProcess<Memory>);
+    struct Tampered {
+        device: InProcess<Memory>,
+        answers: Receiver,
+        session: SessionNumber,
+    }
     impl Read for Tampered {
         fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
-            self.0.read(bytes)
+            let length = self.device.read(bytes)?;
+            for &byte in &bytes[..length] {
+                if let Some(Ok(frame)) = self.answers.push(byte, NO_SESSION)
+                    && let Ok(Message::Answer { answer: Answer::Info(info), .. }) =
+                        postcard::from_bytes(frame.content)
+                {
+                    self.session = info.session;
+                }
+            }
+            Ok(length)
         }
     }
     impl Write for Tampered {
@@ -82,17 +95,18 @@ fn another_muscle_has_other_bits() {
             // An upload is given another mass, in a frame that is whole.
             let mut receiver = Receiver::new();
             for &byte in bytes {
-                if let Some(Ok(frame)) = receiver.push(byte)
+                if let Some(Ok(frame)) = receiver.push(byte, self.session)
                     && let Ok(Request::Upload { place, mut upload }) =
                         postcard::from_bytes(frame.content)
                 {
                     upload.muscle.mass *= 1.000_001;
                     let request = Request::Upload { place, upload };
-                    self.0.write_all(&encode(frame.sequence, &request).expect("a frame"))?;
+                    let frame = encode(frame.session, frame.sequence, &request);
+                    self.device.write_all(&frame.expect("a frame"))?;
                     return Ok(bytes.len());
                 }
             }
-            self.0.write(bytes)
+            self.device.write(bytes)
         }
         fn flush(&mut self) -> std::io::Result<()> {
             Ok(())
@@ -101,7 +115,11 @@ fn another_muscle_has_other_bits() {
     let muscle =
         muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
     let trace = trace::read_inputs(&data("vectors/fes_steps.csv")).expect("inputs");
-    let mut host = Client::new(Tampered(InProcess::boot(Memory::new())));
+    let mut host = Client::new(Tampered {
+        device: InProcess::boot(Memory::new()),
+        answers: Receiver::new(),
+        session: NO_SESSION,
+    });
     let played = hil::play(&mut host, &muscle, Mode::Fes, &trace, &mut |_| ());
     assert!(matches!(played, Err(HilError::Differs(_))), "{played:?}");
 }
@@ -341,9 +359,7 @@ fn muscles_outlast_a_loss_of_power() {
     };
     let memory = host.into_line().into_memory();
     let mut host = Client::new(InProcess::boot(memory));
-    let Answer::Info(info) = host.ask(&Request::Hello).expect("a greeting") else {
-        panic!("no greeting")
-    };
+    let info = host.greet().expect("a greeting");
     assert_eq!(info.restored, 1);
     let Answer::State(after) = host.ask(&Request::State { place: 1 }).expect("words") else {
         panic!("no words")
@@ -358,7 +374,7 @@ fn reactions(device: &mut InProcess<Memory>, bytes: &[u8]) -> Vec<String> {
     let mut receiver = Receiver::new();
     let (mut byte, mut said) = ([0], Vec::new());
     while device.read(&mut byte).is_ok() {
-        if let Some(Ok(frame)) = receiver.push(byte[0]) {
+        if let Some(Ok(frame)) = receiver.push(byte[0], NO_SESSION) {
             let message: Message<'_> = postcard::from_bytes(frame.content).expect("a message");
             said.push(match message {
                 Message::NotActedUpon(error) => format!("{error:?}"),
@@ -379,11 +395,16 @@ fn reaction(device: &mut InProcess<Memory>, bytes: &[u8]) -> String {
 #[test]
 fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     let mut device = InProcess::boot(Memory::new());
-    let frame = |sequence, request: &Request| encode(sequence, request).expect("a frame");
-    let drive = |sequence| frame(sequence, &Request::Drive([None; CHANNELS]));
+    let drive = Request::Drive([None; CHANNELS]);
     // Before a greeting, nothing is done.
-    assert_eq!(reaction(&mut device, &drive(0)), "NoSession");
-    assert!(reaction(&mut device, &frame(65535, &Request::Hello)).contains("Info"));
+    let early = encode(NO_SESSION, 0, &drive).expect("a frame");
+    assert_eq!(reaction(&mut device, &early), "NoSession");
+    let hello = encode(NO_SESSION, 65535, &Request::Hello).expect("a frame");
+    let info = reaction(&mut device, &hello);
+    let number = info.split("session: ").nth(1).and_then(|rest| rest.split(',').next());
+    let session: SessionNumber = number.and_then(|number| number.parse().ok()).expect("a number");
+    let frame = |sequence, request: &Request| encode(session, sequence, request).expect("a frame");
+    let drive = |sequence| frame(sequence, &drive);
     assert!(reaction(&mut device, &drive(0)).contains("Done"));
     // The same frame again, and one of before.
     let said = reaction(&mut device, &drive(0));
@@ -418,13 +439,17 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     let endless: Vec<u8> = std::iter::repeat_n(1, 3 * MOST_FRAME).chain([0]).collect();
     assert_eq!(reaction(&mut device, &endless), "TooLong");
     // Whole, and no message; a message and a bit more.
-    let said = reaction(&mut device, &encode(1, &0xEE_u8).expect("a frame"));
+    let said = reaction(&mut device, &encode(session, 1, &0xEE_u8).expect("a frame"));
     assert_eq!(said, "NotAMessage");
-    let said = reaction(&mut device, &encode(1, &(Request::Arm, 0_u8)).expect("a frame"));
+    let said = reaction(&mut device, &encode(session, 1, &(Request::Arm, 0_u8)).expect("a frame"));
     assert_eq!(said, "NotAMessage");
     // Another version, whole in itself.
     let mut whole = vec![firmware::link::VERSION + 1, 1, 0, 0];
-    whole.extend(crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&whole).to_le_bytes());
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let mut digest = crc.digest();
+    digest.update(&session.to_le_bytes());
+    digest.update(&whole);
+    whole.extend(digest.finalize().to_le_bytes());
     let mut other = vec![0; 32];
     let length = cobs::encode(&whole, &mut other);
     other.truncate(length + 1);
@@ -444,11 +469,52 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
 fn a_greeting_while_armed_is_a_frame_like_any_other() {
     let mut host = booted();
     arm(&mut host, Fault::Boot);
-    let replayed = encode(0, &Request::Hello).expect("a frame");
+    let replayed = encode(NO_SESSION, 0, &Request::Hello).expect("a frame");
     host.send_raw(&replayed).expect("a line");
-    (0..5).for_each(|_| host.line().tick());
+    host.listen().expect("a line");
     assert_eq!(report(&mut host).frames.refused, 1);
     assert_eq!(report(&mut host).state, State::Armed);
+}
+
+/// All that a host has sent in a session, sent again in another one.
+#[test]
+fn a_recorded_session_does_nothing_in_another_one() {
+    let mut host = booted();
+    let (session, first) = host.session();
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 40,
+        frequency_tenths_pps: 400,
+        recovery: 1,
+    };
+    let requests = [
+        Request::Readings(READINGS),
+        Request::Drive([Some(stimulus), None, None, None]),
+        Request::Acknowledge(Fault::Boot),
+        Request::Arm,
+    ];
+    let recorded: Vec<u8> = (first..)
+        .zip(&requests)
+        .flat_map(|(sequence, one)| encode(session, sequence, one).expect("a frame"))
+        .collect();
+    for request in &requests {
+        host.order(request).expect("done");
+    }
+    assert_eq!(report(&mut host).state, State::Armed);
+    host.order(&Request::Stop).expect("a stop");
+    host.order(&Request::Acknowledge(Fault::Stopped)).expect("its name");
+
+    host.greet().expect("a greeting");
+    assert_ne!(host.session().0, session);
+    let before = report(&mut host).frames;
+    host.line().flowed();
+    host.send_raw(&recorded).expect("a line");
+    (0..100).for_each(|_| host.line().tick());
+    let after = report(&mut host);
+    assert_eq!(after.frames.broken, before.broken + 4);
+    assert!(matches!(after.state, State::Acknowledged { fault: Fault::Stopped, .. }));
+    assert_eq!(host.line().flowed(), 0);
 }
 
 /// Frames that a fuzzer makes of good ones: cut, joined, flipped, swapped, of any length.
@@ -461,8 +527,9 @@ fn mutated() -> impl Strategy<Value = Vec<u8>> {
         Just(Request::Upload { place: 0, upload: fes() }),
         any::<u32>().prop_map(|first| Request::Rows { first, rows: heapless::Vec::new() }),
     ];
-    let good = (any::<u16>(), request)
-        .prop_map(|(sequence, request)| encode(sequence, &request).expect("a frame").to_vec());
+    let good = (any::<u16>(), request).prop_map(|(sequence, request)| {
+        encode(NO_SESSION, sequence, &request).expect("a frame").to_vec()
+    });
     let noise = prop::collection::vec(any::<u8>(), 0..40);
     (good, noise, any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..5_u8).prop_map(
         |(mut bytes, noise, from, to, how)| {
@@ -484,6 +551,9 @@ fn mutated() -> impl Strategy<Value = Vec<u8>> {
 fn frames() -> u32 {
     std::env::var("VM_FUZZ_FRAMES").ok().and_then(|text| text.parse().ok()).unwrap_or(10_000_000)
 }
+
+/// Number of the session.
+const SESSION: SessionNumber = 0x1234_5679;
 
 /// A cheap source of bytes that look random, for as many frames as there are to be.
 struct Noise(u64);
@@ -525,19 +595,24 @@ fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
     let (mut due, mut accepted, mut wrong) = (0_u16, 0_u32, 0_u32);
     session
         .admit(
-            receiver_of(&mut receiver, &encode(u16::MAX, &Request::Hello).expect("a frame")),
-            true,
+            receiver_of(
+                &mut receiver,
+                &encode(NO_SESSION, u16::MAX, &Request::Hello).expect("a frame"),
+            ),
+            Some(SESSION),
         )
         .expect("a greeting");
     let good: Vec<Vec<u8>> =
-        requests.iter().map(|request| encode(0, request).expect("a frame").to_vec()).collect();
+        requests.iter().map(|one| encode(SESSION, 0, one).expect("a frame").to_vec()).collect();
+    let old: Vec<Vec<u8>> =
+        requests.iter().map(|one| encode(SESSION - 2, 0, one).expect("a frame").to_vec()).collect();
     let mut bytes = Vec::new();
     for _ in 0..frames() {
         let index = noise.below(requests.len());
         bytes.clear();
         let fate = noise.below(8);
         if fate == 0 {
-            bytes.extend_from_slice(&encode(due, &requests[index]).expect("a frame"));
+            bytes.extend_from_slice(&encode(SESSION, due, &requests[index]).expect("a frame"));
         } else {
             bytes.extend_from_slice(&good[index]);
         }
@@ -556,13 +631,14 @@ fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
                 bytes.splice(place.., good[other].iter().copied());
             }
             6 => bytes[place..].fill_with(|| u8::try_from(noise.below(256)).expect("a byte")),
-            // The good one as it is, with a number that is over.
+            // Of an earlier session, or with a number that is over.
+            _ if noise.below(2) == 0 => bytes.clone_from(&old[index]),
             _ => (),
         }
         bytes.push(0);
         for &byte in &bytes {
-            let Some(received) = receiver.push(byte) else { continue };
-            match session.admit(received, false) {
+            let Some(received) = receiver.push(byte, SESSION) else { continue };
+            match session.admit(received, None) {
                 Ok(request) => {
                     assert!(requests.contains(&request), "{request:?}");
                     accepted += 1;
@@ -585,9 +661,9 @@ fn receiver_of<'a>(
 ) -> Result<firmware::link::Frame<'a>, LinkError> {
     let (last, first) = frame.split_last().expect("a zero");
     for &byte in first {
-        assert!(receiver.push(byte).is_none());
+        assert!(receiver.push(byte, SESSION).is_none());
     }
-    receiver.push(*last).expect("the end of a frame")
+    receiver.push(*last, SESSION).expect("the end of a frame")
 }
 
 proptest! {
@@ -605,7 +681,7 @@ proptest! {
         while let Ok(1) = host.line().read(&mut [0]) {}
         prop_assert_eq!(host.line().flowed(), 0);
         let mut host = Client::new(host.into_line());
-        prop_assert!(host.ask(&Request::Hello).is_ok());
+        prop_assert!(host.greet().is_ok());
         prop_assert!(matches!(report(&mut host).state, State::Latched(_)));
     }
 }

@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use firmware::link::{Answer, Mode, Request, Upload};
+use firmware::link::{Mode, Request, Upload};
 use firmware::{MOST_STORED, MUSCLE, NotStored, RamFlash, Slots};
 use host_sim::hil::Client;
 use system_tests::device::InProcess;
@@ -149,7 +149,7 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
     };
     let state = |memory| {
         let mut host = Client::new(InProcess::boot(memory));
-        assert!(matches!(host.ask(&Request::Hello), Ok(Answer::Info(info)) if info.restored == 1));
+        assert_eq!(host.greet().expect("a greeting").restored, 1);
         let rows = [firmware::link::RowInputs {
             activation: 1.0,
             path_length: 0.16,
@@ -163,7 +163,7 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
         std::iter::from_fn(|| host.next_trace()).last().expect("traces").outputs[0].force
     };
     let mut host = Client::new(InProcess::boot(RamFlash::<BYTES>::new()));
-    host.ask(&Request::Hello).expect("a greeting");
+    host.greet().expect("a greeting");
     host.order(&upload(0.05)).expect("a muscle");
     let memory = host.into_line().into_memory();
     let light = state(memory.clone());
@@ -172,7 +172,7 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
         // Reading at boot does not wear the power out.
         let cut = Cut { memory: memory.clone(), left, torn: 0 };
         let mut host = Client::new(InProcess::boot(cut));
-        host.ask(&Request::Hello).expect("a greeting");
+        host.greet().expect("a greeting");
         let answer = host.order(&upload(0.1));
         let force = state(host.into_line().into_memory().memory);
         let is_new = (force - 2.0 * light).abs() < 0.02 * light;

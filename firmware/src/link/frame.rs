@@ -20,9 +20,17 @@ pub const MOST_FRAME: usize = cobs::max_encoding_length(MOST_WHOLE) + 1;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
+/// What a frame's checksum begins with: a number that the device makes up for each session, so that frames of an
+/// earlier one are no frames of this; [`NO_SESSION`] for greetings, and for all that the device says.
+pub type SessionNumber = u32;
+/// See [`SessionNumber`].
+pub const NO_SESSION: SessionNumber = 0;
+
 /// A whole frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
+    /// The session it belongs to, or [`NO_SESSION`].
+    pub session: SessionNumber,
     /// Sequence number.
     pub sequence: u16,
     /// A message by postcard.
@@ -30,14 +38,18 @@ pub struct Frame<'a> {
 }
 
 /// Makes a frame of a message, its zero included; none if the message is longer than [`MOST_CONTENT`].
-pub fn encode(sequence: u16, message: &impl Serialize) -> Option<Vec<u8, MOST_FRAME>> {
+pub fn encode(
+    session: SessionNumber,
+    sequence: u16,
+    message: &impl Serialize,
+) -> Option<Vec<u8, MOST_FRAME>> {
     let mut whole = [0; MOST_WHOLE];
     let (header, rest) = whole.split_at_mut(HEADER);
     let [low, high] = sequence.to_le_bytes();
     header.copy_from_slice(&[VERSION, low, high]);
     let room = rest.get_mut(..MOST_CONTENT)?;
     let length = HEADER + postcard::to_slice(message, room).ok()?.len();
-    let crc = CRC.checksum(whole.get(..length)?);
+    let crc = checksum(session, whole.get(..length)?);
     whole.get_mut(length..length + TRAILER)?.copy_from_slice(&crc.to_le_bytes());
 
     let mut frame = Vec::new();
@@ -45,6 +57,13 @@ pub fn encode(sequence: u16, message: &impl Serialize) -> Option<Vec<u8, MOST_FR
     let encoded = cobs::try_encode(whole.get(..length + TRAILER)?, &mut frame).ok()?;
     frame.truncate(encoded + 1);
     Some(frame)
+}
+
+fn checksum(session: SessionNumber, covered: &[u8]) -> u32 {
+    let mut digest = CRC.digest();
+    digest.update(&session.to_le_bytes());
+    digest.update(covered);
+    digest.finalize()
 }
 
 /// Collects the bytes of a line until a frame is whole.
@@ -63,8 +82,12 @@ impl Receiver {
         Self { bytes: Vec::new(), taken: false, too_long: false }
     }
 
-    /// Takes a byte. Where it ends a frame, that is what comes back, or why it is none.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Frame<'_>, LinkError>> {
+    /// Takes a byte. Where it ends a frame, of this session or of none, that is what comes back, or why it is none.
+    pub fn push(
+        &mut self,
+        byte: u8,
+        session: SessionNumber,
+    ) -> Option<Result<Frame<'_>, LinkError>> {
         if core::mem::take(&mut self.taken) {
             self.bytes.clear();
         }
@@ -77,22 +100,24 @@ impl Receiver {
             return Some(Err(LinkError::TooLong));
         }
         // Zeros between frames are no frames: a sender may begin with one to be sure.
-        if self.bytes.is_empty() { None } else { Some(whole(&mut self.bytes)) }
+        if self.bytes.is_empty() { None } else { Some(whole(&mut self.bytes, session)) }
     }
 }
 
 /// The frame in the bytes between two zeros.
-fn whole(bytes: &mut [u8]) -> Result<Frame<'_>, LinkError> {
+fn whole(bytes: &mut [u8], session: SessionNumber) -> Result<Frame<'_>, LinkError> {
     let length = cobs::decode_in_place(bytes).map_err(|_| LinkError::Malformed)?;
     let bytes = bytes.get(..length).ok_or(LinkError::Malformed)?;
     let (covered, crc) = bytes.split_last_chunk::<TRAILER>().ok_or(LinkError::TooShort)?;
     let (&[version, low, high], content) =
         covered.split_first_chunk::<HEADER>().ok_or(LinkError::TooShort)?;
-    if u32::from_le_bytes(*crc) != CRC.checksum(covered) {
-        return Err(LinkError::Checksum);
-    }
+    let crc = u32::from_le_bytes(*crc);
+    let session = [session, NO_SESSION]
+        .into_iter()
+        .find(|session| checksum(*session, covered) == crc)
+        .ok_or(LinkError::Checksum)?;
     if version != VERSION {
         return Err(LinkError::Version { got: version, known: VERSION });
     }
-    Ok(Frame { sequence: u16::from_le_bytes([low, high]), content })
+    Ok(Frame { session, sequence: u16::from_le_bytes([low, high]), content })
 }

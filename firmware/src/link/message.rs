@@ -1,7 +1,7 @@
 //! What host and device say to each other. Adding to an enumeration's end keeps the version; all else changes it.
 
 use crate::device::{MUSCLES, TYPES};
-use crate::link::{Counters, LinkError};
+use crate::link::{Counters, LinkError, SessionNumber};
 use crate::safety::{CHANNELS, Fault, NotArmed, State};
 use crate::stimulus::{Stimulus, StimulusError};
 use heapless::Vec;
@@ -18,7 +18,7 @@ pub const MOST_WORDS: usize = 16;
 // What arrives is taken apart at once.
 #[allow(clippy::large_enum_variant)]
 pub enum Request {
-    /// Begins a session, from this sequence number on; refused while armed. Answer: [`Answer::Info`].
+    /// Begins a session, from this sequence number on; not acted upon while armed. Answer: [`Answer::Info`].
     Hello,
     /// Nothing but that the host is there.
     KeepAlive,
@@ -214,6 +214,8 @@ pub struct Info {
     pub types: u8,
     /// Channels.
     pub channels: u8,
+    /// What frames of this session begin their checksums with.
+    pub session: SessionNumber,
     /// Time between ticks, µs.
     pub tick_us: u32,
     /// Places that had a muscle in memory at boot.

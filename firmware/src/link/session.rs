@@ -1,6 +1,6 @@
 //! Which frames are acted upon: each once, and in order.
 
-use crate::link::{Frame, Request};
+use crate::link::{Frame, NO_SESSION, Request, SessionNumber};
 use serde::{Deserialize, Serialize};
 
 /// Why a frame was not acted upon.
@@ -21,7 +21,7 @@ pub enum LinkError {
         /// The one that is known here.
         known: u8,
     },
-    /// No session: the first message of one is a greeting.
+    /// Of no session: the first message of one is a greeting, which cannot begin one while armed.
     NoSession,
     /// A frame that was acted upon before.
     Replayed {
@@ -53,15 +53,23 @@ pub struct Counters {
 /// The receiving end of a link.
 #[derive(Clone, Debug, Default)]
 pub struct Session {
-    /// Sequence number that is due, once there was a greeting.
-    due: Option<u16>,
+    /// Of the greeting, once there was one.
+    number: SessionNumber,
+    /// Sequence number that is due.
+    due: u16,
     counters: Counters,
 }
 
 impl Session {
     /// No session yet.
     pub const fn new() -> Self {
-        Self { due: None, counters: Counters { accepted: 0, broken: 0, refused: 0 } }
+        let counters = Counters { accepted: 0, broken: 0, refused: 0 };
+        Self { number: NO_SESSION, due: 0, counters }
+    }
+
+    /// Of this session; [`NO_SESSION`] before there is one.
+    pub fn number(&self) -> SessionNumber {
+        self.number
     }
 
     /// What became of frames so far.
@@ -71,11 +79,12 @@ impl Session {
 
     /// The request in what a [`Receiver`](crate::link::Receiver) gave, if it is to be acted upon.
     ///
-    /// A greeting begins a session with any sequence number, but only where that `may_begin`.
+    /// A greeting begins a session with any sequence number, of the number that it `may_begin` with, if there is one.
+    /// Nothing else is acted upon that does not belong to a session.
     pub fn admit(
         &mut self,
         received: Result<Frame<'_>, LinkError>,
-        may_begin: bool,
+        may_begin: Option<SessionNumber>,
     ) -> Result<Request, LinkError> {
         let admitted = received.and_then(|frame| self.request(&frame, may_begin));
         let Counters { accepted, broken, refused } = &mut self.counters;
@@ -93,25 +102,32 @@ impl Session {
         admitted
     }
 
-    fn request(&mut self, frame: &Frame<'_>, may_begin: bool) -> Result<Request, LinkError> {
+    fn request(
+        &mut self,
+        frame: &Frame<'_>,
+        may_begin: Option<SessionNumber>,
+    ) -> Result<Request, LinkError> {
         let parsed = match postcard::take_from_bytes::<Request>(frame.content) {
             Ok((request, [])) => Ok(request),
             _ => Err(LinkError::NotAMessage),
         };
-        let got = frame.sequence;
-        let begins = may_begin && matches!(parsed, Ok(Request::Hello));
-        match self.due {
-            _ if begins => (),
-            None => return Err(LinkError::NoSession),
-            Some(due) if due == got => (),
+        let (got, due) = (frame.sequence, self.due);
+        if frame.session == NO_SESSION {
+            let Some(number) = may_begin.filter(|_| matches!(parsed, Ok(Request::Hello))) else {
+                return Err(LinkError::NoSession);
+            };
+            self.number = number;
+        } else if got != due {
             // Half of all numbers are behind, the other half ahead.
-            Some(due) if got.wrapping_sub(due) >= 0x8000 => {
-                return Err(LinkError::Replayed { sequence: got });
-            }
-            Some(due) => return Err(LinkError::OutOfOrder { got, due }),
+            let is_behind = got.wrapping_sub(due) >= 0x8000;
+            return Err(if is_behind {
+                LinkError::Replayed { sequence: got }
+            } else {
+                LinkError::OutOfOrder { got, due }
+            });
         }
         let request = parsed?;
-        self.due = Some(got.wrapping_add(1));
+        self.due = got.wrapping_add(1);
         Ok(request)
     }
 }

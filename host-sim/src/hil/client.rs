@@ -1,7 +1,8 @@
 //! The host's end of the link.
 
 use firmware::link::{
-    Answer, Frame, Info, LinkError, Message, Receiver, Refusal, Request, Traced, encode,
+    Answer, Frame, Info, LinkError, Message, NO_SESSION, Receiver, Refusal, Request, SessionNumber,
+    Traced, encode,
 };
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
@@ -88,6 +89,7 @@ const GREET_AGAIN: Duration = Duration::from_millis(300);
 pub struct Client<L> {
     line: L,
     receiver: Receiver,
+    session: SessionNumber,
     sequence: u16,
     /// What came between answers.
     traces: VecDeque<Traced>,
@@ -103,7 +105,13 @@ enum Heard {
 impl<L: Line> Client<L> {
     /// On a line.
     pub fn new(line: L) -> Self {
-        Self { line, receiver: Receiver::new(), sequence: 0, traces: VecDeque::new() }
+        Self {
+            line,
+            receiver: Receiver::new(),
+            session: NO_SESSION,
+            sequence: 0,
+            traces: VecDeque::new(),
+        }
     }
 
     /// The line.
@@ -132,16 +140,16 @@ impl<L: Line> Client<L> {
         Ok(self.line.flush()?)
     }
 
-    /// The number of the next request.
-    pub fn sequence(&self) -> u16 {
-        self.sequence
+    /// The session, and the number of its next request.
+    pub fn session(&self) -> (SessionNumber, u16) {
+        (self.session, self.sequence)
     }
 
     /// Sends a request, again if it was broken on its way, and waits for its answer.
     pub fn ask(&mut self, request: &Request) -> Result<Answer<'static>, HilError> {
         let name = name(request);
         let sequence = self.sequence;
-        let Some(frame) = encode(sequence, request) else {
+        let Some(frame) = encode(self.session, sequence, request) else {
             let limit = "must fit into a frame".to_owned();
             return Err(HilError::Unfit { what: "request", value: name.to_owned(), limit });
         };
@@ -192,13 +200,15 @@ impl<L: Line> Client<L> {
                 self.sequence = sequence.wrapping_add(1);
                 // A zero ends what may have been left on the line.
                 self.send_raw(&[0])?;
-                self.send_raw(&encode(sequence, &Request::Hello).unwrap_or_default())?;
+                let hello = encode(NO_SESSION, sequence, &Request::Hello);
+                self.send_raw(&hello.unwrap_or_default())?;
                 sent = Some(Instant::now());
             }
             // An answer to an earlier greeting would begin a session that a later one ends.
             if let Heard::Answer(to, Ok(Answer::Info(info))) = self.hear()?
                 && to.wrapping_add(1) == self.sequence
             {
+                self.session = info.session;
                 return Ok(info);
             }
         }
@@ -229,7 +239,9 @@ impl<L: Line> Client<L> {
                 Err(error) => return Err(error.into()),
             }
             // What is broken on its way here is asked for again after a while.
-            let Some(Ok(Frame { content, .. })) = self.receiver.push(byte[0]) else { continue };
+            let Some(Ok(Frame { content, .. })) = self.receiver.push(byte[0], NO_SESSION) else {
+                continue;
+            };
             match postcard::from_bytes::<Message<'_>>(content) {
                 Ok(Message::Answer { to, answer }) => return Ok(Heard::Answer(to, owned(answer))),
                 Ok(Message::NotActedUpon(error)) => return Ok(Heard::NotActedUpon(error)),
