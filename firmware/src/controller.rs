@@ -80,6 +80,9 @@ impl<'q> Controller<'q> {
         };
         let allowed = self.supervisor.tick(&observed, requested);
         if self.state() == State::Armed {
+            // Before there is a plan: a pulse timer that finds the gate shut throws away what it was told.
+            self.gate.renew();
+            self.gate.set_open(true);
             match Plan::new(&allowed, &self.scale) {
                 Err(_) => self.supervisor.fail(Fault::Request),
                 Ok(plan) if plan == self.told => (),
@@ -91,13 +94,11 @@ impl<'q> Controller<'q> {
             }
         }
         let armed = self.state() == State::Armed;
-        if armed {
-            self.gate.renew();
-        } else {
+        if !armed {
             // The pulse timer forgets it, too.
             self.told = Plan::NOTHING;
+            self.gate.set_open(false);
         }
-        self.gate.set_open(armed);
         armed
     }
 }
