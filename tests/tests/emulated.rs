@@ -80,7 +80,7 @@ const WINDOW: usize = 3600;
 fn kept_alive() -> Vec<Request> {
     let one = |index: usize| match index % 8 {
         0 => {
-            let path_um = Some(160_000 + i32::from(index % 16 == 0));
+            let path_um = Some(160_000 + i32::from(index.is_multiple_of(16)));
             Request::Readings(Readings { path_um, ..READINGS })
         }
         _ => Request::KeepAlive,
