@@ -48,7 +48,11 @@ mod app {
         let built = FesMuscle::build(&PARAMS, TimeStep::MILLISECOND)
             .and_then(|muscle| Ok((muscle, muscle.rest(rest.path_length)?)));
         // Parameters are constants here: they are right, or this program never ran.
-        let Ok((muscle, state)) = built else { loop {} };
+        let Ok((muscle, state)) = built else {
+            loop {
+                cortex_m::asm::wfi();
+            }
+        };
         let mut timer = context.core.SYST;
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(CORE_CLOCK / 1000 - 1);
@@ -79,5 +83,7 @@ mod app {
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
