@@ -28,6 +28,8 @@ fn main() {
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
         if env::var_os("CARGO_FEATURE_BOARD_STM32F405").is_some() {
             println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+            // The last two sectors are for what outlasts a loss of power.
+            println!("cargo::rustc-link-arg-bins=--defsym=_flash_has_storage=1");
         }
     }
 }
