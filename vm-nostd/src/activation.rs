@@ -105,6 +105,7 @@ impl<S: Scalar> ActivationFrequency<S> {
 impl<S: Scalar> ActivationCurve<S> {
     /// Af for an effective frequency Y S f (f0.5, at least 0), and how much Af changes while
     /// that frequency changes by `frequency_change` and the fascicle by `length_change` (L_ce0).
+    #[inline(always)]
     pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> Course<S> {
         if frequency <= S::ZERO {
             return Course::constant(S::ZERO);

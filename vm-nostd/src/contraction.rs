@@ -209,6 +209,7 @@ impl<S: Scalar> Contraction<S> {
     ///
     /// The tendon's extension, not the fascicles' length, carries the state: near slack it is a
     /// small number, and in `f32` a slow motion is not lost in the rounding of a large one.
+    #[inline(always)]
     pub(crate) fn advance<R: RecruitmentTick<S, N>, const N: usize>(
         &self,
         velocity: S,

@@ -91,6 +91,7 @@ impl<S: Scalar> Excitation<S> {
     /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like `fascicle_length`,
     /// at the tick's middle. In the variable x = ∫dt/Tf the two lags are linear and solved
     /// exactly; where f_int and f_eff cross within the tick, x is put together from both sides.
+    #[inline(always)]
     pub(crate) fn advance(
         &self,
         (intermediate, effective): (S::Slow, S::Slow),
@@ -99,21 +100,24 @@ impl<S: Scalar> Excitation<S> {
         slowing: S,
         fascicle_length: S,
     ) -> Excited<S> {
+        // x of a tick, rising and falling, as what is to be divided by what: mostly only one is.
         let rise_time =
             self.rise * fascicle_length * fascicle_length + self.rise_per_frequency * frequency;
         let fall_time = self.fall + self.fall_per_activation * slowing;
-        let rising = self.tick.ratio(rise_time);
-        let falling = (self.tick * fascicle_length).ratio(fall_time);
+        let rising = (self.tick, rise_time);
+        let falling = (self.tick * fascicle_length, fall_time);
 
         let lead = S::of(intermediate) - S::of(effective);
         let excess = S::of(intermediate) - drive;
-        let (before, after) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
+        let (now, then) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
+        let before = now.0.ratio(now.1);
         // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess.
         let converging = (lead >= S::ZERO) == (excess > S::ZERO);
         let crosses = converging && lead.abs() < excess.abs() * before;
         let x = if crosses {
             // Before they cross, x grows at one rate, and from then on at the other.
             let left = S::ONE - lead.abs().ratio(excess.abs() * before);
+            let after = then.0.ratio(then.1);
             lead.abs().ratio(excess.abs()) + after * left
         } else {
             before

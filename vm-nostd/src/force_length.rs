@@ -48,6 +48,7 @@ impl<S: Scalar> ForceLength<S> {
     }
 
     /// FL (0..1) and its slope (1/L_ce0) from the fascicle length's logarithm and reciprocal.
+    #[inline(always)]
     pub(crate) fn at(&self, logarithm: S, reciprocal: S) -> (S, S) {
         let power = (self.skewness * logarithm).exp();
         let offset = (power - S::ONE).scaled(&self.per_width);

@@ -247,13 +247,17 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (inside, _) = self.domain.filaments.clip(middle);
         let reciprocal = inside.reciprocal();
 
-        let targets =
-            self.fibers.each_ref().map(|fiber| fiber.yielding.target(state.fascicle_velocity));
+        // Kept at the middles of the ticks, Y needs its target only once, where the tick starts; its
+        // change across the tick is taken to be that from the middle before.
         let mut yieldings = [[S::ONE; 2]; N];
-        for (((both, fiber), kept), target) in
-            yieldings.iter_mut().zip(&self.fibers).zip(state.yieldings).zip(targets)
+        for ((both, fiber), kept) in
+            yieldings.iter_mut().zip(&self.fibers).zip(&mut state.yieldings)
         {
-            *both = [S::of(kept), S::of(fiber.yielding.advance(kept, target))];
+            let before = S::of(*kept);
+            *kept = fiber.yielding.advance(*kept, state.fascicle_velocity);
+            let middle = S::of(*kept);
+            let half_change = (middle - before) * S::HALF;
+            *both = [middle - half_change, middle + half_change];
         }
         let moment = Moment { input, fascicle_length: middle, travel, reciprocal, yieldings };
         let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, &moment);
@@ -276,10 +280,6 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             state.tendon_extension + stretch - self.contraction.lengthening(travel);
         status |= self.confine(state, middle);
 
-        for ((fiber, kept), before) in self.fibers.iter().zip(&mut state.yieldings).zip(targets) {
-            let mean = (before + fiber.yielding.target(state.fascicle_velocity)) * S::HALF;
-            *kept = fiber.yielding.advance(*kept, mean);
-        }
         let tendon_pull = tendon.pull(state.tendon_extension);
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
         Output {

@@ -102,6 +102,7 @@ impl<S: Scalar> Parallel<S> {
     }
 
     /// Force (F0) at V = 0 and its slope (F0 per L_ce0/s and tick) at a length in L_ce0.
+    #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
         let (value, slope) = (fascicle_length - self.slack_length).scaled(&self.per_toe).softplus();
         (value.scaled(&self.force), slope.scaled(&self.stiffness))

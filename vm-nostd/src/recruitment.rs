@@ -100,6 +100,7 @@ pub struct Moment<S: Scalar, const N: usize> {
 
 /// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it is:
 /// Af during the tick, for a frequency (f0.5), Y at start and end, and the curve of its length.
+#[inline(always)]
 pub(crate) fn activated<S: Scalar>(
     fiber: &Fiber<S>,
     curve: &ActivationCurve<S>,

@@ -18,7 +18,7 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     pub(crate) fascicle_velocity: S,
     /// L_mt at the end of the last tick.
     pub(crate) path_length: S::PathLength,
-    /// Y of each type, 0..1.
+    /// Y of each type at the middle of the last tick, 0..1.
     pub(crate) yieldings: [S::Slow; N],
     pub(crate) recruitment: R::State,
 }

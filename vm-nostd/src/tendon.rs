@@ -122,6 +122,7 @@ impl<S: Scalar> Tendon<S> {
     }
 
     /// Force and stiffness at an extension (L_ce0).
+    #[inline(always)]
     pub(crate) fn pull(&self, extension: S) -> Pull<S> {
         let toes = extension.scaled(&self.per_toe);
         let (value, slope) = toes.softplus();

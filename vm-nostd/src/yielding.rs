@@ -58,16 +58,13 @@ impl<S: Scalar> Yielding<S> {
         Range { least: S::ONE - self.depth, most: S::ONE }
     }
 
-    /// Where Y tends to at a fascicle velocity in L_ce0/s.
-    pub(crate) fn target(&self, velocity: S) -> S {
+    /// Y a tick later than it was, the fascicle velocity (L_ce0/s) being given for the middle of that
+    /// time.
+    pub(crate) fn advance(&self, yielding: S::Slow, velocity: S) -> S::Slow {
         if self.depth == S::ZERO {
-            return S::ONE;
+            return yielding;
         }
-        S::ONE - self.depth * (S::ONE - (-velocity.abs().scaled(&self.per_velocity)).exp())
-    }
-
-    /// Y at the tick's end, given the mean of its target over the tick.
-    pub(crate) fn advance(&self, yielding: S::Slow, target: S) -> S::Slow {
-        self.lag.at_end(yielding, target)
+        let lost = S::ONE - (-velocity.abs().scaled(&self.per_velocity)).exp();
+        self.lag.at_end(yielding, S::ONE - self.depth * lost)
     }
 }

@@ -94,6 +94,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         LumpedState::restored(fibers, saved, super::share(), frequencies)
     }
 
+    #[inline(always)]
     fn advance(
         &self,
         fibers: &[Fiber<S>; N],
@@ -137,7 +138,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
             let (start, end) = (S::of(before), S::of(excited.effective));
-            result.activation = activated(
+            let activation = activated(
                 fiber,
                 &fiber.activation.at(moment.reciprocal),
                 &mut kept.sag,
@@ -146,16 +147,18 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 share_above(start, end, self.firing),
                 moment.travel,
             );
-            *foreseen = result.activation.next_share();
+            *foreseen = activation.next_share();
 
             // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
-            if middle >= unit.threshold {
-                let excess = middle - unit.threshold;
+            let excess = middle - unit.threshold;
+            let weight = if excess >= S::ZERO {
                 let value = middle * of_sum(excess);
                 let slope = middle + excess - count * value;
-                result.weight = Course { middle: value, change: slope * relative_change };
-            }
-            result.compression_weight = result.weight;
+                Course { middle: value, change: slope * relative_change }
+            } else {
+                Course::constant(S::ZERO)
+            };
+            *result = Recruited { activation, weight, compression_weight: weight };
         }
         recruited
     }

@@ -84,6 +84,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         LumpedState::restored(fibers, saved, none, [super::share(); N])
     }
 
+    #[inline(always)]
     fn advance(
         &self,
         fibers: &[Fiber<S>; N],

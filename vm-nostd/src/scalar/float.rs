@@ -64,15 +64,19 @@ macro_rules! float {
                 1.0 / self
             }
 
+            #[inline(always)]
             fn exp(self) -> Self {
                 $kernels::exp(self)
             }
+            #[inline(always)]
             fn ln(self) -> Self {
                 $kernels::ln(self)
             }
+            #[inline(always)]
             fn softplus(self) -> (Self, Self) {
                 $kernels::softplus(self)
             }
+            #[inline(always)]
             fn weibull(self) -> (Self, Self) {
                 $kernels::weibull(self)
             }
@@ -104,6 +108,7 @@ macro_rules! float {
             fn share(value: f64) -> Self {
                 value as Self
             }
+            #[inline(always)]
             fn lags(self) -> [Lags<Self>; 2] {
                 let half = self * 0.5;
                 let done_by_half = $kernels::one_minus_exp(half);

@@ -29,12 +29,19 @@ impl Factor {
         Self { mantissa: nearest(mantissa), shift }
     }
 
+    /// A mantissa × 2^-shift, 1 to 62.
+    #[inline(always)]
+    pub(super) fn scaled_down(mantissa: i32, shift: u32) -> Self {
+        Self { mantissa, shift: shift as u8 }
+    }
+
     /// Units times the factor, rounded; saturated. Lengths and their changes go through this: cut off
     /// tick by tick, fascicles would creep.
     ///
     /// # Scaling and overflow
     /// Of a factor below 1/2, all of the product's low word is shifted out, and its high word, at
     /// most 2^30, can take half a unit more.
+    #[inline(always)]
     pub(super) fn times(self, units: i32) -> i32 {
         let product = exact(units, self.mantissa);
         match u32::from(self.shift) {

@@ -43,6 +43,7 @@ pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 /// # Scaling and overflow
 /// m is Q1.31 and c Q0.32: their product Q1.63 is 1 within 1/128. Its 1 is bit 63 and falls out of
 /// the 32 bits from bit 31 on, which leaves r: below 2^25 + 1 in magnitude.
+#[inline(always)]
 fn reduced(m: u32) -> (usize, u32, i32) {
     let index = ((m >> (31 - INDEX_BITS)) & (ENTRIES as u32 - 1)) as usize;
     let c = RECIPROCALS[index];
@@ -56,6 +57,7 @@ fn reduced(m: u32) -> (usize, u32, i32) {
 /// c (1 - r + r² - r³ + r⁴) is c/(1 + r) to r⁵ < 2^-35; for r⁴, of at most 2^-28, r² times the
 /// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product with
 /// c/2, in Q0.31, below 2^25 of either sign: the sum does not wrap around.
+#[inline(always)]
 pub(super) fn reciprocal(m: u32) -> u32 {
     let (_, c, r) = reduced(m);
     let square = high(r, r);

@@ -1,5 +1,6 @@
 //! Quotients: products with a reciprocal; there is no division.
 
+use super::factor::Factor;
 use super::mantissa;
 use super::number::exact;
 
@@ -7,23 +8,14 @@ use super::number::exact;
 /// denominator; within 2^-28 of its value and 1 unit. A denominator below a unit counts as one.
 ///
 /// # Scaling and overflow
-/// Both are shifted left until their first bit is set, n and d in Q1.31. The reciprocal of d is at
-/// most 2^31 in Q1.31, and the high word of its product with n below 2^31; doubled, it is the
-/// quotient's mantissa. What is left is a shift by 7 and the difference of the two shifts.
+/// The denominator, shifted left by z bits until its first bit is set, is a mantissa in Q1.31; its
+/// reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the numerator has to
+/// be multiplied with. That shift is 7 to 38 bits.
 pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
-    let (n, d) = (numerator.unsigned_abs(), denominator.max(1) as u32);
-    let (zeros, denominator_zeros) = ((n | 1).leading_zeros(), d.leading_zeros());
-    let reciprocal = mantissa::reciprocal(d << denominator_zeros);
-    let product = ((u64::from(n << zeros) * u64::from(reciprocal)) >> 32) as u32;
-    let magnitude = match 6 + zeros as i32 - denominator_zeros as i32 {
-        ..=-2 => u32::MAX,
-        -1 => product << 1,
-        0 => product,
-        shift @ 1..=32 => ((product >> (shift - 1)) + 1) >> 1,
-        _ => 0,
-    };
-    let magnitude = magnitude.min(i32::MAX as u32) as i32;
-    if numerator < 0 { -magnitude } else { magnitude }
+    let denominator = denominator.max(1) as u32;
+    let zeros = denominator.leading_zeros();
+    let reciprocal = mantissa::reciprocal(denominator << zeros).min(i32::MAX as u32);
+    Factor::scaled_down(reciprocal as i32, 38 - zeros).times(numerator)
 }
 
 /// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and below it
@@ -41,6 +33,7 @@ pub(super) fn reciprocal(x: i32) -> i32 {
 
 /// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right, rounded; saturated where the shift
 /// is to the left.
+#[inline(always)]
 fn scaled_back(reciprocal: u32, shift: i32) -> i32 {
     match shift {
         ..0 => i32::MAX,
@@ -50,6 +43,7 @@ fn scaled_back(reciprocal: u32, shift: i32) -> i32 {
 }
 
 /// Two words as one, shifted left by at most 31 bits.
+#[inline(always)]
 fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
@@ -60,6 +54,7 @@ fn word((high, low): (i32, u32), left: u32) -> i32 {
 /// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.
 /// Shifted left by z bits, 1 to 22, it is a mantissa; its reciprocal in Q1.31, shifted right by
 /// 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is a unit less.
+#[inline(always)]
 pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
     const ONE: i32 = 1 << 16;
     let (high, low) = exact(d, v);
@@ -74,6 +69,7 @@ pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
 /// # Scaling and overflow
 /// All products are Q16.48 and at most 2^62. Numerator and denominator are shifted left together
 /// until one of them has only its sign before the first bit, and cut to 32 bits.
+#[inline(always)]
 pub(super) fn halley(residual: i32, slope: i32, half_curvature: i32) -> i32 {
     let slope = i64::from(slope.max(1));
     let (square, bend) = (slope * slope, i64::from(residual) * i64::from(half_curvature));

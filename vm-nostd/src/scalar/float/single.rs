@@ -13,6 +13,7 @@ const LEAST_EXPONENT: f32 = -87.0;
 const MOST_EXPONENT: f32 = 88.0;
 
 /// e^x, within 2.1e-7 of its value, for -87 <= x <= 88; beyond, as at the nearest of these.
+#[inline(always)]
 pub(super) fn exp(x: f32) -> f32 {
     let x = if x > LEAST_EXPONENT { x } else { LEAST_EXPONENT };
     let x = if x < MOST_EXPONENT { x } else { MOST_EXPONENT };
@@ -26,6 +27,7 @@ pub(super) fn exp(x: f32) -> f32 {
 }
 
 /// 1 - e^-x for x >= 0, within 4e-7 of its value up to x = 8; beyond, as there.
+#[inline(always)]
 pub(super) fn one_minus_exp(x: f32) -> f32 {
     // In an eighth of x, and then three times 1 - (1 - y)².
     let u = if x < 8.0 { x * 0.125 } else { 1.0 };
@@ -58,6 +60,7 @@ static MANTISSAS: [(f32, f32); LOGARITHMS] = {
 };
 
 /// ln x of a positive normal number, within 1.5e-7 and 1e-7 of its value.
+#[inline(always)]
 pub(super) fn ln(x: f32) -> f32 {
     let bits = x.to_bits();
     let exponent = (bits >> FRACTION_BITS) as i32 - 127;
@@ -81,6 +84,7 @@ const fn hermite(length: f64, start: (f64, f64), end: (f64, f64)) -> [f32; 4] {
 
 /// Value of a function in pieces, and its slope by pieces, at `place` pieces from the start of the
 /// first; beyond the last by no more than rounding.
+#[inline(always)]
 fn piecewise<const N: usize>(pieces: &[[f32; 4]; N], place: f32) -> (f32, f32) {
     let index = (place as usize).min(N - 1);
     let share = place - index as f32;
@@ -112,6 +116,7 @@ static SOFTPLUS: [[f32; 4]; SOFTPLUS_PIECES] = {
 ///
 /// Far below 0 it is e^x: what balances two such forces, in a muscle that rests slack, is their
 /// ratio.
+#[inline(always)]
 pub(super) fn softplus(x: f32) -> (f32, f32) {
     // The two tails differ by x.
     let place = (-SOFTPLUS_LEAST as f32 - x.abs()) * SOFTPLUS_PER_UNIT as f32;
@@ -145,6 +150,7 @@ static WEIBULL: [[f32; 4]; WEIBULL_PIECES] = {
 
 /// 1 - e^-e^x, within 2e-6 of its value, and its slope, within 3e-5, for -16 <= x <= 3; beyond, as
 /// at the nearest of these.
+#[inline(always)]
 pub(super) fn weibull(x: f32) -> (f32, f32) {
     let place = (x - WEIBULL_LEAST as f32) * WEIBULL_PER_UNIT as f32;
     let place = if place > 0.0 { place } else { 0.0 };
