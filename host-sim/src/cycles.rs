@@ -15,6 +15,7 @@ mod instruction;
 mod profile;
 mod reach;
 mod report;
+mod source;
 mod timing;
 mod trace;
 

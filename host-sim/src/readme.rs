@@ -4,6 +4,7 @@ use crate::cycles;
 use crate::scenario::paper_muscle;
 use crate::trace::{TraceError, write_atomically};
 use crate::verify::{Report, Row};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A place in a README that a measured table stands in, between two lines.
@@ -117,13 +118,13 @@ pub fn error_budget(report: &Report) -> String {
 /// The table: what a tick costs, beside the baselines.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
-        "| case | typ mean | typ max | pess max | x model | max % F0 | state B | code B | stack B |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| case | typ mean | typ max | pess max | x model | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows {
         text.push_str(&format!(
-            "| {} | {:.0} | {} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
             row.case,
             row.cycles_typ_mean,
             row.cycles_typ_max,
@@ -132,8 +133,36 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
             optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
             row.state_bytes,
             row.code_bytes,
+            optional(row.both_modes_bytes.map(|bytes| bytes.to_string())),
             row.stack_bytes,
         ));
+    }
+    text.push('\n');
+    text.push_str(&files(rows));
+    text
+}
+
+/// The table: what share of a tick each file of the model takes, cases side by side.
+fn files(rows: &[cycles::Row]) -> String {
+    let rows: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
+    let mut total: BTreeMap<&str, f64> = BTreeMap::new();
+    for (file, cycles) in rows.iter().flat_map(|row| &row.files) {
+        *total.entry(file).or_default() += cycles;
+    }
+    let mut names: Vec<&str> = total.keys().copied().collect();
+    names.sort_by(|a, b| total[b].total_cmp(&total[a]));
+    let mut text = String::from("| typ mean, by file |");
+    rows.iter().for_each(|row| text.push_str(&format!(" {} |", row.case)));
+    text.push_str("\n|---|");
+    rows.iter().for_each(|_| text.push_str("---:|"));
+    text.push('\n');
+    for name in names {
+        text.push_str(&format!("| {name} |"));
+        for row in &rows {
+            let of_file = row.files.iter().find(|(file, _)| file == name);
+            text.push_str(&format!(" {:.0} |", of_file.map_or(0.0, |(_, cycles)| *cycles)));
+        }
+        text.push('\n');
     }
     text
 }

@@ -70,6 +70,7 @@ pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     print(&profile.title)?;
     print(&calls(&profile))?;
     print(&parts("function", &profile.functions, &profile))?;
+    print(&parts("file", &profile.files, &profile))?;
     print(&parts("class of instruction", &profile.classes, &profile))?;
     if let Some(count) = args.listing {
         print(&listing(&profile, count))?;
@@ -138,6 +139,7 @@ fn table(rows: &[Row]) -> Table {
         "max % F0",
         "state B",
         "code B",
+        "both modes B",
         "stack B",
         "budget",
     ];
@@ -161,6 +163,7 @@ fn table(rows: &[Row]) -> Table {
             optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
             row.state_bytes.to_string(),
             row.code_bytes.to_string(),
+            optional(row.both_modes_bytes.map(|bytes| bytes.to_string())),
             row.stack_bytes.to_string(),
             optional(row.budget.map(|budget| budget.to_string())),
         ]);

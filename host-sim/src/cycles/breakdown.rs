@@ -1,8 +1,9 @@
 //! Where cycles go: by function, by class of instruction, by address.
 
 use super::estimator::Cost;
-use super::image::Image;
+use super::image::{Image, ImageError};
 use super::instruction::{Class, Instruction};
+use super::source::Source;
 use std::collections::BTreeMap;
 
 /// A part of the cost.
@@ -25,6 +26,12 @@ pub fn by_function(image: &Image, executions: &Executions) -> Vec<Part> {
             .map_or("outside of any function", |function| &function.name)
             .to_owned()
     })
+}
+
+/// The cost of what is in each file of the model, the most expensive first.
+pub fn by_file(image: &Image, executions: &Executions) -> Result<Vec<Part>, ImageError> {
+    let source = Source::of(image)?;
+    Ok(sums(executions, |instruction| source.file(instruction.address)))
 }
 
 /// The cost of each class of instruction, the most expensive first.

@@ -100,6 +100,14 @@ impl Case {
         matches!(self.subject, Subject::Model(..))
     }
 
+    /// The module whose constants are the tables of what it is computed in.
+    pub fn tables(&self) -> &'static str {
+        match self.arithmetic() {
+            Arithmetic::Fixed => "vm_nostd::scalar::fixed",
+            _ => "vm_nostd::scalar::float::single",
+        }
+    }
+
     /// Bytes of a muscle's state.
     pub fn state_bytes(&self) -> u32 {
         let bytes = match (self.subject, self.arithmetic()) {

@@ -33,10 +33,17 @@ pub struct Followed {
     pub calls: Vec<Cost>,
     /// Deepest stack below the caller's, bytes, as pushes, pops and changes by constants show it.
     pub stack_bytes: u32,
-    /// Code of all functions that were executed, bytes.
-    pub code_bytes: u32,
+    /// Address and bytes of all functions that were executed.
+    pub code: BTreeSet<(u32, u32)>,
     /// Every counted instruction: how often it was executed, and what it cost in all.
     pub executions: Vec<(Instruction, u64, Cost)>,
+}
+
+impl Followed {
+    /// Bytes of all functions that were executed.
+    pub fn code_bytes(&self) -> u32 {
+        self.code.iter().map(|(_, bytes)| bytes).sum()
+    }
 }
 
 /// Which calls go into [`Followed::executions`].
@@ -130,7 +137,7 @@ pub fn follow(
         if calls.is_empty() {
             return Err(FollowError::NotCalled((*name).to_owned()));
         }
-        let executed: BTreeSet<(u32, u32)> = estimator
+        let code = estimator
             .blocks()
             .filter_map(|block| image.function_at(block.first))
             .map(|function| (function.address, function.size))
@@ -138,7 +145,7 @@ pub fn follow(
         all.push(Followed {
             calls,
             stack_bytes: estimator.stack_bytes(),
-            code_bytes: executed.iter().map(|(_, size)| size).sum(),
+            code,
             executions: estimator.executions(&mut decoded).map_err(FollowError::Decode)?,
         });
     }

@@ -22,6 +22,14 @@ pub enum ImageError {
         /// What is wrong with it.
         source: object::Error,
     },
+    /// What it says of its source could not be read.
+    #[error("{}: where its code comes from: {reason}", path.display())]
+    Lines {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// No function has the name, or several have.
     #[error("{found} functions are named \"{name}\" in the image{}", list(candidates))]
     Function {
@@ -52,10 +60,14 @@ pub struct Function {
 /// An image.
 #[derive(Clone, Debug)]
 pub struct Image {
+    /// The file.
+    pub path: PathBuf,
     /// Address and content of each section.
     sections: Vec<(u32, Vec<u8>)>,
     /// By address.
     functions: Vec<Function>,
+    /// Name and bytes of each constant.
+    constants: Vec<(String, u32)>,
 }
 
 impl Image {
@@ -89,6 +101,14 @@ impl Image {
                 Some(Function { name, address, size: symbol.size() as u32 })
             })
             .collect();
+        let constants = file
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Data)
+            .filter_map(|symbol| {
+                let name = format!("{:#}", rustc_demangle::demangle(symbol.name().ok()?));
+                Some((name, symbol.size() as u32))
+            })
+            .collect();
         // Of several at one address, the one that knows its size.
         functions.sort_by_key(|function| (function.address, function.size == 0));
         functions.dedup_by_key(|function| function.address);
@@ -101,7 +121,14 @@ impl Image {
                 functions[index].size = end.saturating_sub(address);
             }
         }
-        Ok(Self { sections, functions })
+        Ok(Self { path: path.to_owned(), sections, functions, constants })
+    }
+
+    /// Bytes of all constants of a module and those in it.
+    pub fn constant_bytes(&self, module: &str) -> u32 {
+        let inside = format!("{module}::");
+        let of_module = self.constants.iter().filter(|(name, _)| name.starts_with(&inside));
+        of_module.map(|(_, bytes)| bytes).sum()
     }
 
     /// Adds code that is not in the file.

@@ -3,7 +3,7 @@
 
 use super::bench::{BenchError, measure};
 use super::boot::{self, Argument, BootError};
-use super::breakdown::{Part, by_class, by_function};
+use super::breakdown::{Part, by_class, by_file, by_function};
 use super::case::{self, CASES, Case, Run};
 use super::estimator::Cost;
 use super::follow::{Count, FollowError, Followed, follow};
@@ -57,6 +57,8 @@ pub struct Profile {
     pub code_bytes: u32,
     /// Cost of each function.
     pub functions: Vec<Part>,
+    /// Cost of what is in each file of the model.
+    pub files: Vec<Part>,
     /// Cost of each class of instruction.
     pub classes: Vec<Part>,
     /// Every executed instruction, with how often it was and its cost in all.
@@ -64,16 +66,17 @@ pub struct Profile {
 }
 
 impl Profile {
-    fn new(title: String, image: &Image, followed: Followed) -> Self {
-        Self {
+    fn new(title: String, image: &Image, followed: Followed) -> Result<Self, ImageError> {
+        Ok(Self {
             title,
             functions: by_function(image, &followed.executions),
+            files: by_file(image, &followed.executions)?,
             classes: by_class(&followed.executions),
+            code_bytes: followed.code_bytes(),
             calls: followed.calls,
             stack_bytes: followed.stack_bytes,
-            code_bytes: followed.code_bytes,
             executions: followed.executions,
-        }
+        })
     }
 }
 
@@ -109,7 +112,7 @@ pub fn of_case(name: &str, tick: Option<usize>, tracer: Tracer) -> Result<Profil
     if let Count::At(call) = count {
         followed.calls = followed.calls.split_off(call);
     }
-    Ok(Profile::new(title, &image, followed))
+    Ok(Profile::new(title, &image, followed)?)
 }
 
 /// The run that a tick, counted from 0 over all of them, is in, and its row there.
@@ -147,7 +150,7 @@ pub fn of_image(
         return Err(FollowError::NotCalled(function.to_owned()).into());
     };
     let title = format!("{} of {} on {machine}", entry.name, path.display());
-    Ok(Profile::new(title, &image, followed))
+    Ok(Profile::new(title, &image, followed)?)
 }
 
 /// The machine that images run on if no other is named.

@@ -1,14 +1,16 @@
 //! The table of costs, and the budgets they are held to.
 
 use super::bench::{BenchError, measure};
+use super::breakdown::{Part, by_file};
 use super::case::{self, CASES, Case, Subject};
 use super::estimator::Cost;
 use super::follow::{Count, Followed};
+use super::image::{Image, ImageError};
 use super::trace::Tracer;
 use crate::engine::{self, Arithmetic, RunError};
 use crate::reference::Mode;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 const BUDGETS: &str = include_str!("../../data/budgets.toml");
 /// What the timing model may be short of hardware by.
@@ -17,6 +19,18 @@ pub const MARGIN: f64 = 1.05;
 const USED: f64 = 0.8;
 /// Core clocks that muscles are counted for, MHz.
 pub const CLOCKS: [u32; 4] = [48, 84, 168, 480];
+
+/// What `data/budgets.toml` holds.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Budgets {
+    /// Most that the most expensive tick may take, relative to the mean, pessimistic.
+    maximum_over_mean: f64,
+    /// Least that the literal port in `f32` takes, relative to the model.
+    literal_over_model: f64,
+    /// Of each case of the model.
+    model: BTreeMap<String, Budget>,
+}
 
 /// What a case may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -28,6 +42,8 @@ pub struct Budget {
     pub state_bytes: u32,
     /// Bytes of code.
     pub code_bytes: u32,
+    /// Bytes of code and tables of both modes.
+    pub both_modes_bytes: u32,
     /// Bytes of stack.
     pub stack_bytes: u32,
 }
@@ -96,6 +112,9 @@ pub struct Row {
     pub state_bytes: u32,
     /// Bytes of code that was executed, whole functions.
     pub code_bytes: u32,
+    /// Bytes of code and tables of the model in this arithmetic, both modes; none for the others.
+    #[serde(default)]
+    pub both_modes_bytes: Option<u32>,
     /// Bytes of stack below the caller's.
     pub stack_bytes: u32,
     /// Largest error on the same inputs, adversarial ones apart, % of F0; none without a force.
@@ -106,12 +125,21 @@ pub struct Row {
     pub budget: Option<u64>,
     /// Whether all budgets hold and none is stale.
     pub pass: bool,
+    /// Typical cycles of a tick, on average, by the model's file that they are part of, most first; none
+    /// for what is not the model.
+    #[serde(default)]
+    pub files: Vec<(String, f64)>,
     /// What is wrong with a row that does not pass.
     #[serde(skip)]
     pub problem: String,
 }
 
 impl Row {
+    /// The most expensive tick relative to the mean, pessimistic.
+    pub fn maximum_over_mean(&self) -> f64 {
+        self.cycles_pess_max as f64 / self.cycles_pess_mean
+    }
+
     /// Muscles that a core of `megahertz` steps at 1 kHz in a `share` of its time, 0..1.
     pub fn muscles(&self, megahertz: u32, share: f64) -> u64 {
         let cycles_per_tick = f64::from(megahertz) * 1e3 * share;
@@ -125,6 +153,9 @@ pub enum ReportError {
     /// The bench could not be run.
     #[error(transparent)]
     Bench(#[from] BenchError),
+    /// The bench does not say where its code comes from.
+    #[error(transparent)]
+    Image(#[from] ImageError),
     /// A scenario could not be run on the host.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -135,19 +166,43 @@ pub enum ReportError {
 
 /// Measures all cases and holds the model's to their budgets.
 pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
-    let budgets: BTreeMap<String, Budget> = toml::from_str(BUDGETS)?;
+    let budgets: Budgets = toml::from_str(BUDGETS)?;
     let scenarios = case::scenarios();
-    let (_, followed) = measure(&CASES, &case::runs(), tracer, Count::At(usize::MAX))?;
+    let (image, followed) = measure(&CASES, &case::runs(), tracer, Count::All)?;
     let mut rows = Vec::new();
     for (case, followed) in CASES.iter().zip(&followed) {
         let error = case.largest_error(&scenarios)?;
-        rows.push(row(case, followed, error, budgets.get(case.name)));
+        rows.push(row(case, followed, error));
     }
-    for (index, case) in CASES.iter().enumerate().filter(|(_, case)| !case.is_model()) {
-        rows[index].ratio = cycles_of_model(&rows, case.mode())
-            .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
+    for (index, case) in CASES.iter().enumerate() {
+        if case.is_model() {
+            rows[index].both_modes_bytes = Some(both_modes_bytes(&image, case, &followed));
+            rows[index].files = files(&image, &followed[index])?;
+        } else {
+            rows[index].ratio = cycles_of_model(&rows, case.mode())
+                .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
+        }
+        budgets.hold(case, &mut rows[index]);
     }
     Ok(rows)
+}
+
+/// Typical cycles of a tick by file.
+fn files(image: &Image, followed: &Followed) -> Result<Vec<(String, f64)>, ImageError> {
+    let parts = by_file(image, &followed.executions)?;
+    let each = |part: Part| (part.name, part.cost.cycles[1] as f64 / followed.calls.len() as f64);
+    Ok(parts.into_iter().map(each).collect())
+}
+
+/// Bytes of code and tables of the model in a case's arithmetic, all its modes that are measured.
+fn both_modes_bytes(image: &Image, case: &Case, followed: &[Followed]) -> u32 {
+    let alike = CASES
+        .iter()
+        .zip(followed)
+        .filter(|(other, _)| other.is_model() && other.arithmetic() == case.arithmetic());
+    let code: BTreeSet<(u32, u32)> =
+        alike.flat_map(|(_, followed)| &followed.code).copied().collect();
+    code.iter().map(|(_, bytes)| bytes).sum::<u32>() + image.constant_bytes(case.tables())
 }
 
 /// What a tick of the model costs in `f32` in a mode, the continuous one if none is named.
@@ -157,11 +212,10 @@ fn cycles_of_model(rows: &[Row], mode: Option<Mode>) -> Option<u64> {
     Some(rows.get(index)?.cycles_pess_max)
 }
 
-fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>, budget: Option<&Budget>) -> Row {
+fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
     let calls = &followed.calls;
     let [optimistic, typical, pessimistic] = [0, 1, 2].map(|setting| Spread::of(calls, setting));
     let worst = (0..calls.len()).max_by_key(|&tick| calls[tick].cycles[2]).unwrap_or(0);
-    let problems = problems(case, followed, pessimistic.max, budget);
     Row {
         case: case.name.to_owned(),
         mode: case.mode().map_or("-", engine::mode_name).to_owned(),
@@ -181,61 +235,120 @@ fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>, budget: Option
         worst_tick: worst,
         replay: format!("cargo vm cycles --case {} --tick {worst}", case.name),
         state_bytes: case.state_bytes(),
-        code_bytes: followed.code_bytes,
+        code_bytes: followed.code_bytes(),
+        both_modes_bytes: None,
         stack_bytes: followed.stack_bytes,
         max_pct_f0,
         ratio: None,
-        budget: budget.map(|budget| budget.cycles),
-        pass: problems.is_empty(),
-        problem: problems.join("; "),
+        budget: None,
+        pass: true,
+        files: Vec::new(),
+        problem: String::new(),
     }
 }
 
-/// What is wrong with a case and its budget.
-fn problems(case: &Case, followed: &Followed, cycles: u64, budget: Option<&Budget>) -> Vec<String> {
-    let Some(budget) = budget else {
-        return if case.is_model() { vec!["no budget".to_owned()] } else { Vec::new() };
-    };
-    let cycles = (cycles as f64 * MARGIN).ceil() as u64;
-    let used = [
-        ("cycles", cycles, budget.cycles),
-        ("state_bytes", case.state_bytes().into(), budget.state_bytes.into()),
-        ("code_bytes", followed.code_bytes.into(), budget.code_bytes.into()),
-        ("stack_bytes", followed.stack_bytes.into(), budget.stack_bytes.into()),
-    ];
-    used.into_iter()
-        .filter_map(|(what, used, budget)| {
-            if used > budget {
-                Some(format!("{what} {used} > budget {budget}"))
-            } else if (used as f64) < USED * budget as f64 {
-                Some(format!("{what} {used} leaves a stale budget of {budget}"))
-            } else {
-                None
-            }
-        })
-        .collect()
+impl Budgets {
+    /// Holds a case's row to what it may cost.
+    fn hold(&self, case: &Case, row: &mut Row) {
+        let budget = self.model.get(case.name);
+        let problems = match (case.subject, budget) {
+            (Subject::Model(..), Some(budget)) => self.problems_of_model(row, budget),
+            (Subject::Model(..), None) => vec!["no budget".to_owned()],
+            (Subject::Literal(_, Arithmetic::F32), _) => self.problems_of_literal(row),
+            _ => Vec::new(),
+        };
+        row.budget = budget.map(|budget| budget.cycles);
+        row.pass = problems.is_empty();
+        row.problem = problems.join("; ");
+    }
+
+    fn problems_of_model(&self, row: &Row, budget: &Budget) -> Vec<String> {
+        let cycles = (row.cycles_pess_max as f64 * MARGIN).ceil() as u64;
+        let used = [
+            ("cycles", cycles, budget.cycles),
+            ("state_bytes", row.state_bytes.into(), budget.state_bytes.into()),
+            ("code_bytes", row.code_bytes.into(), budget.code_bytes.into()),
+            (
+                "both_modes_bytes",
+                row.both_modes_bytes.map_or(u64::MAX, u64::from),
+                budget.both_modes_bytes.into(),
+            ),
+            ("stack_bytes", row.stack_bytes.into(), budget.stack_bytes.into()),
+        ];
+        let mut problems: Vec<String> = used
+            .into_iter()
+            .filter_map(|(what, used, budget)| {
+                if used > budget {
+                    Some(format!("{what} {used} > budget {budget}"))
+                } else if (used as f64) < USED * budget as f64 {
+                    Some(format!("{what} {used} leaves a stale budget of {budget}"))
+                } else {
+                    None
+                }
+            })
+            .collect();
+        let (spread, most) = (row.maximum_over_mean(), self.maximum_over_mean);
+        if spread > most {
+            problems.push(format!("maximum over mean {spread:.3} > {most}"));
+        }
+        problems
+    }
+
+    fn problems_of_literal(&self, row: &Row) -> Vec<String> {
+        let least = self.literal_over_model;
+        match row.ratio {
+            Some(ratio) if ratio >= least => Vec::new(),
+            Some(ratio) => vec![format!("{ratio:.1} times the model < {least}")],
+            None => vec!["no model to compare with".to_owned()],
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// What is wrong with a case whose worst tick takes 1000 pessimistic cycles.
-    fn problem(budget: Option<Budget>) -> String {
+    /// The row of a case whose worst tick takes 1000 pessimistic cycles.
+    fn a_row(case: &Case) -> Row {
         let cost = |cycles| Cost { instructions: cycles / 2, cycles: [cycles / 2, cycles, cycles] };
         let followed = Followed {
             calls: vec![cost(900), cost(1000), cost(800)],
             stack_bytes: 200,
-            code_bytes: 5000,
+            code: [(0x100, 3000), (0x2000, 2000)].into(),
             executions: Vec::new(),
         };
-        let row = row(&CASES[0], &followed, Some(0.1), budget.as_ref());
-        assert_eq!((row.cycles_pess_max, row.worst_tick, row.ticks), (1000, 1, 3));
-        assert_eq!((row.cycles_typ_mean, row.cycles_opt_p99), (900.0, 500));
+        let row = row(case, &followed, Some(0.1));
+        Row { both_modes_bytes: Some(9000), ratio: Some(120.0), ..row }
+    }
+
+    fn budgets() -> Budgets {
+        let budget = Budget {
+            cycles: 1050,
+            state_bytes: CASES[0].state_bytes(),
+            code_bytes: 5000,
+            both_modes_bytes: 9000,
+            stack_bytes: 200,
+        };
+        let model = [(CASES[0].name.to_owned(), budget)].into();
+        Budgets { maximum_over_mean: 1.12, literal_over_model: 100.0, model }
+    }
+
+    /// What is wrong with a row, once the first case's budget is changed.
+    fn problem(case: &Case, change: impl Fn(&mut Budgets, &mut Row)) -> String {
+        let (mut budgets, mut row) = (budgets(), a_row(case));
+        change(&mut budgets, &mut row);
+        budgets.hold(case, &mut row);
         assert_eq!(row.pass, row.problem.is_empty());
+        row.problem
+    }
+
+    #[test]
+    fn a_row_says_what_its_ticks_cost() {
+        let row = a_row(&CASES[0]);
+        assert_eq!((row.cycles_pess_max, row.worst_tick, row.ticks), (1000, 1, 3));
+        assert_eq!((row.cycles_typ_mean, row.cycles_opt_p99, row.code_bytes), (900.0, 500, 5000));
         // 84,000 cycles a tick, half of them, and 1050 a muscle.
         assert_eq!((row.muscles(84, 0.5), row.muscles(1, 1.0)), (40, 0));
-        row.problem
     }
 
     #[test]
@@ -248,20 +361,44 @@ mod tests {
 
     #[test]
     fn a_budget_is_neither_exceeded_nor_stale() {
-        let state_bytes = CASES[0].state_bytes();
-        let budget = Budget { cycles: 1050, state_bytes, code_bytes: 5000, stack_bytes: 200 };
-        assert_eq!(problem(Some(budget)), "");
-        assert_eq!(problem(None), "no budget");
         let with = |change: fn(&mut Budget)| {
-            let mut changed = budget;
-            change(&mut changed);
-            problem(Some(changed))
+            problem(&CASES[0], |budgets, _| budgets.model.values_mut().for_each(change))
         };
+        assert_eq!(with(|_| ()), "");
         assert_eq!(with(|b| b.cycles = 1049), "cycles 1050 > budget 1049");
         assert_eq!(with(|b| b.cycles = 1313), "cycles 1050 leaves a stale budget of 1313");
         assert_eq!(with(|b| b.stack_bytes = 199), "stack_bytes 200 > budget 199");
         assert_eq!(with(|b| b.code_bytes = 6300), "code_bytes 5000 leaves a stale budget of 6300");
+        assert_eq!(with(|b| b.both_modes_bytes = 8999), "both_modes_bytes 9000 > budget 8999");
+        let state_bytes = CASES[0].state_bytes();
         let (less, exceeded) = (state_bytes - 1, with(|b| b.state_bytes -= 1));
         assert_eq!(exceeded, format!("state_bytes {state_bytes} > budget {less}"));
+    }
+
+    #[test]
+    fn a_model_without_budget_or_with_an_expensive_tick_does_not_pass() {
+        let none = problem(&CASES[0], |budgets, _| budgets.model.clear());
+        assert_eq!(none, "no budget");
+        let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
+        assert_eq!(spread, "maximum over mean 1.111 > 1.1");
+    }
+
+    #[test]
+    fn the_literal_port_is_slower_by_as_much_as_is_claimed() {
+        let literal = Case::named("literal-fes-f32").expect("a case");
+        assert_eq!(problem(literal, |_, _| ()), "");
+        let with = |ratio| problem(literal, |_, row| row.ratio = ratio);
+        assert_eq!(with(Some(99.4)), "99.4 times the model < 100");
+        assert_eq!(with(None), "no model to compare with");
+    }
+
+    #[test]
+    fn every_case_of_the_model_has_a_budget() {
+        let budgets: Budgets = toml::from_str(BUDGETS).expect("budgets");
+        let names: Vec<&str> = budgets.model.keys().map(String::as_str).collect();
+        let cases = CASES.iter().filter(|case| case.is_model());
+        let mut expected: Vec<&str> = cases.map(|case| case.name).collect();
+        expected.sort_unstable();
+        assert_eq!(names, expected);
     }
 }

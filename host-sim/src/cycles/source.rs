@@ -1,0 +1,65 @@
+//! Which file of the source an instruction comes from. Of the model that says which equation it is part
+//! of, however much the compiler has inlined: each has a file of its own.
+
+use super::image::{Image, ImageError};
+use addr2line::Loader;
+
+/// Where the model's source is.
+const MODEL: &str = "vm-nostd/src/";
+/// Where its kernels are: what they were inlined into is what they are part of.
+const KERNELS: &str = "scalar";
+
+/// The files that an image was made from.
+pub struct Source(Loader);
+
+impl Source {
+    /// What an image says of its source.
+    pub fn of(image: &Image) -> Result<Self, ImageError> {
+        let unread = |reason: Box<dyn std::error::Error>| ImageError::Lines {
+            path: image.path.clone(),
+            reason: reason.to_string(),
+        };
+        Loader::new(&image.path).map(Self).map_err(unread)
+    }
+
+    /// The file that the code at an address is part of: of the calls that were inlined there, the
+    /// innermost in the model that is no kernel; without one, that they are kernels, or not the model.
+    pub fn file(&self, address: u32) -> String {
+        let mut files = Vec::new();
+        if let Ok(mut frames) = self.0.find_frames(address.into()) {
+            while let Ok(Some(frame)) = frames.next() {
+                files.extend(frame.location.and_then(|place| place.file).map(str::to_owned));
+            }
+        }
+        equation(files.iter().map(String::as_str)).to_owned()
+    }
+}
+
+/// The file that counts, of those from the innermost to the outermost call.
+fn equation<'a>(files: impl Iterator<Item = &'a str>) -> &'a str {
+    let mut found = "not of the model";
+    for (_, file) in files.filter_map(|file| file.split_once(MODEL)) {
+        if !file.starts_with(KERNELS) {
+            return file;
+        }
+        found = "kernels that are called";
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kernel_counts_for_the_equation_that_it_was_inlined_into() {
+        let equation = |files: &[&'static str]| equation(files.iter().copied());
+        let inlined = ["/a/vm-nostd/src/scalar/float/single.rs", "/a/vm-nostd/src/sag.rs"];
+        assert_eq!(equation(&inlined), "sag.rs");
+        let core = ["/rustc/1/library/core/src/ops/arith.rs", "/a/vm-nostd/src/recruitment/fes.rs"];
+        assert_eq!(equation(&core), "recruitment/fes.rs");
+        assert_eq!(equation(&inlined[..1]), "kernels that are called");
+        assert_eq!(equation(&["other.c"]), "not of the model");
+        assert_eq!(equation(&[]), "not of the model");
+    }
+}
