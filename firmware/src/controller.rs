@@ -35,6 +35,11 @@ impl<'q> Controller<'q> {
         }
     }
 
+    /// What supervision allows.
+    pub fn limits(&self) -> &Limits {
+        self.supervisor.limits()
+    }
+
     /// Where supervision is.
     pub fn state(&self) -> State {
         self.supervisor.state()

@@ -9,7 +9,8 @@ use crate::stimulus::Stimulus;
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// Time between ticks of the firmware, µs: 500 to 2,000. 1,000, or what `VM_TICK_US` says when it is built.
+/// Time between ticks of the firmware, µs: 500 to 2,000. 1,000, or what `VM_TICK_US` says when it is built; what is
+/// no such number does not build.
 pub const TICK_US: u32 = match option_env!("VM_TICK_US") {
     None => 1000,
     Some(text) => match u32::from_str_radix(text, 10) {
@@ -23,9 +24,6 @@ const _: () = assert!(TICK_US >= 500 && TICK_US <= 2000, "VM_TICK_US: must be 50
 pub const MUSCLES: usize = 2;
 /// Fibre types of each muscle.
 pub const TYPES: usize = 2;
-
-/// Ticks for which what sensors read holds.
-const READINGS_LAST: u32 = 200_000 / TICK_US;
 
 /// Rows that can wait for their tick, and their outputs for the link.
 const WAITING: usize = 64;
@@ -136,8 +134,8 @@ pub struct Device<'q> {
     /// What the last row asks for, of channels that electrodes of muscles have.
     by_rows: [Option<(usize, Option<Stimulus>)>; MUSCLES],
     readings: Readings,
-    /// Ticks since these came.
-    readings_age: u32,
+    /// How long ago these came, µs.
+    readings_age_us: u32,
     was_armed: bool,
     /// The last tick was in time.
     in_time: bool,
@@ -156,7 +154,7 @@ impl<'q> Device<'q> {
             driven: [None; CHANNELS],
             by_rows: [None; MUSCLES],
             readings: Readings::default(),
-            readings_age: 0,
+            readings_age_us: 0,
             was_armed: false,
             in_time: true,
             ticks: 0,
@@ -178,15 +176,17 @@ impl<'q> Device<'q> {
             memory_is_intact &= driven.check();
         }
         self.advance();
-        self.readings_age = self.readings_age.saturating_add(1);
+        self.readings_age_us = self.readings_age_us.saturating_add(TICK_US);
+        let readings_us = self.controller.limits().readings_ms.saturating_mul(1000);
         let observed = Observed {
             host_heard: self.controller.take_heard(),
             impedance_ohm: self.readings.impedance_ohm,
             supply_mv: self.readings.supply_mv,
             // Old news is none.
-            path_um: self.readings.path_um.filter(|_| self.readings_age <= READINGS_LAST),
+            path_um: self.readings.path_um.filter(|_| self.readings_age_us <= readings_us),
             in_time: self.in_time,
             memory_is_intact,
+            // The controller knows.
             output_answers: true,
         };
         let armed = self.controller.tick(&observed, &self.requested());
@@ -268,7 +268,7 @@ impl<'q> Device<'q> {
             }
             Order::Readings(readings) => {
                 self.readings = readings;
-                self.readings_age = 0;
+                self.readings_age_us = 0;
                 Outcome::Done
             }
             Order::Acknowledge(fault) => armed(self.controller.acknowledge(fault)),

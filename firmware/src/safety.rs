@@ -35,6 +35,8 @@ pub struct Limits {
     pub session_ms: u32,
     /// Longest silence of the host, ms.
     pub silence_ms: u32,
+    /// For how long a path length that was read is one, ms.
+    pub readings_ms: u32,
     /// Of each electrode that stimulates and was measured, Ω: below is a short, above an electrode that has come
     /// off. Measuring takes pulses, so that one that was not measured yet is let pass.
     pub impedance_ohm: (u32, u32),
@@ -60,6 +62,7 @@ impl Limits {
         rise_ua: 2_000,
         session_ms: 30 * 60 * 1000,
         silence_ms: 100,
+        readings_ms: 200,
         impedance_ohm: (100, 5_000),
         supply_mv: (3_000, 4_300),
         path_um: (50_000, 500_000),
@@ -131,7 +134,7 @@ pub struct Observed {
     pub impedance_ohm: [Option<u32>; CHANNELS],
     /// mV.
     pub supply_mv: u32,
-    /// Path length, µm; none if the sensor gave no number.
+    /// Path length, µm; none if the sensor gave no number, or none lately.
     pub path_um: Option<i32>,
     /// The last tick began and finished in time.
     pub in_time: bool,
@@ -205,6 +208,11 @@ impl Supervisor {
             path_before: None,
             risen: [(0, 0); CHANNELS],
         }
+    }
+
+    /// What is allowed.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
     }
 
     /// Where it is.

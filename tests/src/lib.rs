@@ -12,11 +12,12 @@ pub struct ModelReadme;
 pub mod debugger;
 pub mod device;
 pub mod electrodes;
+pub mod host;
 pub mod muscles;
 
 use host_sim::target::{self, Board, TargetError};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Says why a test did not run, or fails where `VM_REQUIRE_TARGET` is set and it must.
 pub fn skip(reason: &str) {
@@ -28,7 +29,16 @@ pub fn skip(reason: &str) {
 /// Builds a program for a board, unless the target's library is not to be had; panics if it
 /// does not build.
 pub fn build(board: Board, program: &str) -> Result<PathBuf, TargetError> {
-    match target::build(board, program, &[]) {
+    build_with(board, program, &[])
+}
+
+/// The same with variables of the environment.
+pub fn build_with(
+    board: Board,
+    program: &str,
+    variables: &[(&str, &Path)],
+) -> Result<PathBuf, TargetError> {
+    match target::build(board, program, variables) {
         Err(error @ TargetError::Build { .. }) => panic!("{error}"),
         other => other,
     }

@@ -22,14 +22,6 @@ impl Checksum {
         self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(FACTOR);
     }
 
-    /// Takes in a word of a saved state.
-    #[inline]
-    pub(crate) fn add_long(&mut self, word: u64) {
-        // Its two halves; words of 32 bits have none in the upper one.
-        self.add(word as u32);
-        self.add((word >> 32) as u32);
-    }
-
     /// The sum so far.
     pub fn value(self) -> u32 {
         self.0
@@ -73,15 +65,22 @@ summed_numbers! {
     f32: |value| value.to_bits();
 }
 
+impl Summed for u64 {
+    fn sum(&self, checksum: &mut Checksum) {
+        checksum.add(*self as u32);
+        checksum.add((*self >> 32) as u32);
+    }
+}
+
 impl Summed for usize {
     fn sum(&self, checksum: &mut Checksum) {
-        checksum.add_long(*self as u64);
+        (*self as u64).sum(checksum);
     }
 }
 
 impl Summed for f64 {
     fn sum(&self, checksum: &mut Checksum) {
-        checksum.add_long(self.to_bits());
+        self.to_bits().sum(checksum);
     }
 }
 

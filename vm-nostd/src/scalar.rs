@@ -36,7 +36,7 @@ pub trait Scalar:
     + 'static
 {
     /// A word of a saved state.
-    type Bits: Copy + Debug + Eq + Into<u64>;
+    type Bits: Copy + Debug + Eq + Into<u64> + Summed;
     /// A constant to multiply with, of any magnitude.
     type Factor: Copy + Debug + Summed;
     /// A value that a lag moves, by less in a tick than the number itself may resolve.

@@ -1,6 +1,6 @@
 //! Everything of a muscle that changes from tick to tick.
 
-use crate::checksum::Checksum;
+use crate::checksum::{Checksum, Summed};
 use crate::domain::Range;
 use crate::recruitment::{NaturalContinuous, Recruitment, RecruitmentState};
 use crate::scalar::Scalar;
@@ -64,7 +64,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// Checksum of all of its words.
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
-        self.words().for_each(|word| checksum.add_long(word.into()));
+        self.words().for_each(|word| word.sum(&mut checksum));
         checksum.value()
     }
 
