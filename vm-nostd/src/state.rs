@@ -69,9 +69,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     }
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
-    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; Y of each type; U_eff, where each
-    /// type is one unit; and of each unit f_int, f_eff, S, the Af foreseen for the next tick, and its
-    /// effective length where it has one.
+    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; Y of each type, half a tick
+    /// ago; U_eff, where each type is one unit; and of each unit f_int, f_eff, S, the Af foreseen
+    /// for the next tick, and its effective length where it has one.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
             self.tendon_extension.to_bits(),

@@ -13,7 +13,8 @@ pub(super) const ONE: i32 = 1 << FRACTION;
 /// wraps around.
 ///
 /// It is an [`I8F24`], and comes from and turns into one. Products are those of that type, the next
-/// lower of what is not exact, in a third of its instructions.
+/// lower of what is not exact, in fewer instructions; where they saturate they are up to 255 units from
+/// the end, for which it takes none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fixed(I8F24);
 
