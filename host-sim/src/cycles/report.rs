@@ -288,7 +288,9 @@ impl Budgets {
             })
             .collect();
         let (spread, most) = (row.maximum_over_mean(), self.maximum_over_mean);
-        if spread > most {
+        // No number is not within it.
+        let within = spread <= most;
+        if !within {
             problems.push(format!("maximum over mean {spread:.3} > {most}"));
         }
         problems
@@ -381,6 +383,8 @@ mod tests {
         assert_eq!(none, "no budget");
         let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
         assert_eq!(spread, "maximum over mean 1.111 > 1.1");
+        let none = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = f64::NAN);
+        assert_eq!(none, "maximum over mean 1.111 > NaN");
     }
 
     #[test]

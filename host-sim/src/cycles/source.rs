@@ -38,7 +38,7 @@ impl Source {
 /// The file that counts, of those from the innermost to the outermost call.
 fn equation<'a>(files: impl Iterator<Item = &'a str>) -> &'a str {
     let mut found = "not of the model";
-    for (_, file) in files.filter_map(|file| file.split_once(MODEL)) {
+    for (_, file) in files.filter_map(|file| file.rsplit_once(MODEL)) {
         if !file.starts_with(KERNELS) {
             return file;
         }

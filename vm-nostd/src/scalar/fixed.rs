@@ -83,8 +83,8 @@ impl Scalar for Fixed {
     }
     #[inline(always)]
     fn is_saturated(self) -> bool {
-        // A product ends up to 255 units below, a sum of sums one.
-        self >= Self::from_bits(i32::MAX - 255)
+        // A sum of sums can end a unit below. No product with another number is asked.
+        self >= Self::from_bits(i32::MAX - 1)
     }
 
     fn factor(value: f64) -> Factor {

@@ -8,9 +8,9 @@ use super::number::exact;
 /// denominator; within 2^-28 of its value and 1 unit. A denominator below a unit counts as one.
 ///
 /// # Scaling and overflow
-/// The denominator, shifted left by z bits until its first bit is set, is a mantissa in Q1.31; its
+/// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in Q1.31; its
 /// reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the numerator has to
-/// be multiplied with. That shift is 7 to 38 bits.
+/// be multiplied with. That shift is 7 to 37 bits.
 pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
     let denominator = denominator.max(1) as u32;
     let zeros = denominator.leading_zeros();
