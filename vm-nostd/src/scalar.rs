@@ -22,6 +22,9 @@ pub(crate) mod sealed {
 /// The equations are written once, over this trait. Sums and products saturate in fixed point; where
 /// it would lose what is small, they use an operation that says so: [`scaled`](Scalar::scaled) by a constant
 /// of any magnitude, [`Slow`](Scalar::Slow) for what a lag moves, [`ratio`](Scalar::ratio).
+///
+/// Kernels, and all that is called once a tick, are inlined: a call of a kernel costs a frame, and keeps
+/// what is in registers from staying there.
 pub trait Scalar:
     sealed::Sealed
     + Summed
