@@ -3,12 +3,12 @@
 //! Requests of a fault's script wait in the line before the firmware looks for them: time is its own, and does not
 //! depend on how fast this host is.
 
+use firmware::Stimulus;
 use firmware::link::{
-    Answer, Message, Mode, NO_SESSION, Readings, Receiver, Refusal, Report, Request, SessionNumber,
-    Upload, encode,
+    Answer, Message, NO_SESSION, Readings, Receiver, Refusal, Report, Request, SessionNumber,
+    encode,
 };
 use firmware::safety::{CHANNELS, Fault, NotArmed, State};
-use firmware::{MUSCLE, Stimulus};
 use host_sim::hil::{self, Client, Emulated};
 use host_sim::target::{STIMULATOR, STM32F405};
 use host_sim::{muscle_file, reference, trace};
@@ -18,6 +18,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use system_tests::debugger::Port;
+use system_tests::host::{READINGS, fes};
 use system_tests::{build, skip};
 
 fn data(name: &str) -> PathBuf {
@@ -62,9 +63,6 @@ struct Machine {
     sequence: u16,
     log: tempfile::NamedTempFile,
 }
-
-const READINGS: Readings =
-    Readings { impedance_ohm: [Some(1000); CHANNELS], supply_mv: 3700, path_um: Some(160_000) };
 
 fn stimulus(amplitude_ua: u32) -> Stimulus {
     Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 1000, recovery: 1 }
@@ -314,10 +312,9 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     let Some(image) = image() else { return };
     let port = Port::free();
     let mut machine = Machine::start(&image, port.arguments());
-    let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: None };
     let rest = Request::Rest([Some(0.16), None]);
     let said = machine.script(&[
-        Request::Upload { place: 0, upload },
+        Request::Upload { place: 0, upload: fes() },
         rest.clone(),
         Request::State { place: 0 },
     ]);
