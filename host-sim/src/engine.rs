@@ -171,8 +171,7 @@ impl Rest<'_> {
     ) -> Result<Box<dyn Running>, RunError> {
         let count = count_units(self.muscle)?;
         match count {
-            0..=8 => self.of_units::<S, A, N, 8>(mode),
-            9..=64 => self.of_units::<S, A, N, 64>(mode),
+            0..=64 => self.of_units::<S, A, N, 64>(mode),
             65..=MOST_UNITS => self.of_units::<S, A, N, MOST_UNITS>(mode),
             _ => Err(RunError::UnitCount(count)),
         }

@@ -236,14 +236,14 @@ fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
             Some("t_s,force_n,fascicle_length_l0,fascicle_velocity_l0_per_s,status")
         );
         assert_eq!(text.lines().count(), vector.lines().count());
-        // Against the force in the vector's fifth column, in N: how near is `verify`'s to say, this
-        // is about the right columns.
+        // Against the force in the vector's fifth column, in N, to 0.1 % of F0: how near is
+        // `verify`'s to say, this is about the right columns.
         for (line, expected) in lines.zip(vector.lines().skip(1)) {
             let cell = |text: &str, index: usize| {
                 text.split(',').nth(index).expect("a cell").parse::<f64>().expect("a number")
             };
             assert_eq!(cell(line, 0), cell(expected, 0));
-            assert!((cell(line, 1) - cell(expected, 4)).abs() < 0.15, "{line} {expected}");
+            assert!((cell(line, 1) - cell(expected, 4)).abs() < 0.266, "{line} {expected}");
             let status = if arithmetic == "reference" { ",unchecked" } else { ",ok" };
             assert!(line.ends_with(status), "{line}");
         }

@@ -110,12 +110,11 @@ impl<S: Scalar> ActivationCurve<S> {
         if frequency <= S::ZERO {
             return Course::constant(S::ZERO);
         }
-        // Keeps the logarithm in its domain.
-        let inside = frequency.max(S::LEAST);
-        let logarithm = (inside * self.per_scale).max(S::LEAST).ln();
+        // Kept in the logarithm's domain.
+        let logarithm = (frequency * self.per_scale).max(S::LEAST).ln();
         let (value, growth) = (self.exponent * logarithm).weibull();
         // By ln of the power it is the growth; d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
-        let relative = frequency_change.ratio(inside).max(-self.steepest).min(self.steepest);
+        let relative = frequency_change.ratio(frequency).max(-self.steepest).min(self.steepest);
         let exponent_change = self.exponent_slope * length_change;
         let change = self.exponent * relative + (logarithm - S::ONE) * exponent_change;
         Course { middle: value, change: growth * change }

@@ -4,7 +4,9 @@
 //! Active, the fascicles follow the tendon within 10 to 50 µs; passive, they ring on it at some
 //! 400 Hz. One implicit midpoint rule, fitted to both ends, does for both: a substep's forces are
 //! balanced once, at its middle, for the mean velocity there, with the branch of FV told by the
-//! sign of the balance at V = 0, and one of Halley's corrections from the velocity foreseen.
+//! sign of the balance at V = 0. From the velocity foreseen, FV is followed as the hyperbola that has its
+//! slope and curvature there, which it is where one fibre type acts alone: what is left to solve is
+//! quadratic, and its root right even where the path's speed jumps.
 //!
 //! - Ringing: the rule turns the phase of an oscillation by 2 atan(w h/2) instead of w h; with an
 //!   inertia that is less by as much as the tendon is taut, it turns it by w h on a taut tendon, and
@@ -25,23 +27,25 @@ use crate::tendon::Tendon;
 use crate::time_step::TimeStep;
 use decay::Decay;
 
-/// First substep of a tick at whose start the force may jump, s: the fascicles follow within
-/// 50 µs, and a short first substep resolves what they travel meanwhile.
-const FIRST_SUBSTEP: f64 = 0.1e-3;
-/// It is not longer than this share of the tick.
-const FIRST_SHARE: f64 = 0.25;
-/// Longest of the other substeps, s.
-const LONGEST_SUBSTEP: f64 = 0.3e-3;
+/// Longest substep, s: of a tick of 1 ms and more, and of a shorter one, of which half the error is
+/// expected. Where a tick begins the force may jump, and what the fascicles travel until they have
+/// followed goes with the substep.
+const LONGEST_SUBSTEP: f64 = 0.5e-3;
+const LONGEST_FINE_SUBSTEP: f64 = 0.15e-3;
+const COARSE_TICK: f64 = 1e-3;
 /// The substeps resolve the ringing of a passive muscle: of angular frequency w, and of amplitude
 /// A in F0 where the path's speed jumps by 1 L_ce0/s, it is w h √A at most. The error of a step
 /// that is second order goes with the square of this.
-const RINGING: f64 = 0.2;
+const RINGING: f64 = 0.35;
 /// Most of the substeps: only a muscle far from any anatomy asks for more.
 const MOST_SUBSTEPS: u8 = 40;
 /// w h/2 that inertia is fitted for at most: at pi/2 there would be none left.
 const FASTEST_RINGING: f64 = 1.2;
 /// The mechanics count as settled if no balance before a correction is worse, F0.
 const SETTLED: f64 = 0.5;
+/// What the filaments resist a change of velocity with counts as no less, F0 s/L_ce0: far below any
+/// viscosity.
+const LEAST_STEEPNESS: f64 = 1e-5;
 
 /// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
@@ -84,9 +88,8 @@ pub(crate) struct Contraction<S: Scalar> {
     pub(crate) tendon: Tendon<S>,
     /// eta, F0 s/L_ce0.
     viscosity: S,
-    first: Substep<S>,
-    other: Substep<S>,
-    /// How many there are, the first included.
+    substep: Substep<S>,
+    /// How many there are.
     substeps: u8,
     /// A tick, s.
     tick: S::Factor,
@@ -94,10 +97,11 @@ pub(crate) struct Contraction<S: Scalar> {
     tick_rate: S::Factor,
     speed: S,
     settled: S,
+    least_steepness: S,
     decay: Decay<S>,
 }
 
-summed!([S: Scalar] Contraction<S> { tendon, viscosity, first, other, substeps, tick, tick_rate, speed, settled, decay });
+summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, settled, least_steepness, decay });
 
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
@@ -142,59 +146,45 @@ fn tendon_stiffness<const N: usize>(params: &MuscleParams<N>) -> f64 {
     params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length
 }
 
-/// The first substep of a tick at whose start the force may jump, s.
-fn first_substep(step: TimeStep) -> f64 {
-    Scalar::min(FIRST_SUBSTEP, FIRST_SHARE * step.seconds())
-}
-
-/// The largest coefficient of the mechanics of a muscle: its inertia in the shortest substep.
+/// The largest coefficient of the mechanics of a muscle: its inertia in a substep.
 pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> f64 {
     let mass = moving_mass(params);
-    let first = first_substep(step);
-    let rest = step.seconds() - first;
-    let other = rest / f64::from(ringing_substeps(rest, mass, tendon_stiffness(params)));
-    2.0 * mass / Scalar::min(other, first)
+    2.0 * mass * f64::from(substeps(step, mass, tendon_stiffness(params))) / step.seconds()
 }
 
-/// How many substeps cover `rest` (s), for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
-fn ringing_substeps(rest: f64, mass: f64, stiffness: f64) -> u8 {
+/// How many substeps a tick has, for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
+fn substeps(step: TimeStep, mass: f64, stiffness: f64) -> u8 {
     // w h √A <= RINGING in its fourth power, which takes no root: w² = stiffness/mass and
     // A² = stiffness mass.
     let square = |x: f64| x * x;
     let wanted = square(stiffness / mass) * stiffness * mass;
+    let coarse = step.seconds() >= COARSE_TICK;
+    let longest = if coarse { LONGEST_SUBSTEP } else { LONGEST_FINE_SUBSTEP };
     (1..MOST_SUBSTEPS)
         .find(|&count| {
-            let substep = rest / f64::from(count);
-            substep <= LONGEST_SUBSTEP * (1.0 + 1e-9)
-                && square(square(substep / RINGING)) * wanted <= 1.0
+            let substep = step.seconds() / f64::from(count);
+            substep <= longest * (1.0 + 1e-9) && square(square(substep / RINGING)) * wanted <= 1.0
         })
         .unwrap_or(MOST_SUBSTEPS)
 }
 
 impl<S: Scalar> Contraction<S> {
-    /// The mechanics of a muscle; `jumps` says whether its force may jump where a tick begins.
-    pub(crate) fn new<const N: usize>(
-        params: &MuscleParams<N>,
-        step: TimeStep,
-        jumps: bool,
-    ) -> Self {
+    /// The mechanics of a muscle.
+    pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let (mass, stiffness) = (moving_mass(params), tendon_stiffness(params));
-        let first = if jumps { first_substep(step) } else { 0.0 };
-        let rest = step.seconds() - first;
-        let count = ringing_substeps(rest, mass, stiffness);
-        let other = rest / f64::from(count);
-        let substep = |seconds| Substep::new(seconds, step, mass, stiffness);
+        let substeps = substeps(step, mass, stiffness);
+        let seconds = step.seconds() / f64::from(substeps);
         let tendon = &params.elements.tendon;
         Self {
             tendon: Tendon::new(tendon, params.fascicle_length, params.tendon_length, step),
             viscosity: S::from_f64(params.elements.parallel.viscosity),
-            first: substep(if jumps { first } else { other }),
-            other: substep(other),
-            substeps: if jumps { count + 1 } else { count },
+            substep: Substep::new(seconds, step, mass, stiffness),
+            substeps,
             tick: S::factor(step.seconds()),
             tick_rate: S::factor(1.0 / step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
             settled: S::from_f64(SETTLED),
+            least_steepness: S::from_f64(LEAST_STEEPNESS),
             decay: Decay::new(),
         }
     }
@@ -226,13 +216,11 @@ impl<S: Scalar> Contraction<S> {
         // Time since the tick's middle, in ticks.
         let mut time = -S::HALF;
         let (mut worst, mut fastest) = (S::ZERO, S::ZERO);
-        let mut substep = &self.first;
         for _ in 0..self.substeps {
-            let (balance, speed) = tick.substep::<R>(substep, &mut motion, time);
+            let (balance, speed) = tick.substep::<R>(&mut motion, time);
             worst = worst.max(balance);
             fastest = fastest.max(speed);
-            time = time + substep.share;
-            substep = &self.other;
+            time = time + self.substep.share;
         }
         Advanced { motion, settled: worst <= self.settled, held: fastest >= self.speed }
     }
@@ -251,13 +239,9 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
     /// One substep that starts at `time` with `motion` and leaves it as it is at the end. Returns
     /// how far the forces (F0) were from balance at the velocity foreseen, and the speed (L_ce0/s).
     #[inline(always)]
-    fn substep<R: RecruitmentTick<S, N>>(
-        &self,
-        substep: &Substep<S>,
-        motion: &mut Motion<S>,
-        time: S,
-    ) -> (S, S) {
+    fn substep<R: RecruitmentTick<S, N>>(&self, motion: &mut Motion<S>, time: S) -> (S, S) {
         let (c, element) = (self.contraction, self.contractile);
+        let substep = &c.substep;
         let (start, half) = (motion.velocity, substep.half_share);
         let time = time + half;
 
@@ -282,26 +266,29 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
 
         // F_ce', what it gains with velocity and time, at that velocity.
         let mut force = passive + (c.viscosity + elastic) * velocity;
-        let (mut damping, mut elastic, mut rise) = (c.viscosity, elastic, element.passive.change);
+        let (mut viscosity, mut elastic, mut rise) = (c.viscosity, elastic, element.passive.change);
         if R::PASSIVE_ONLY_PULLS && force < S::ZERO {
-            (force, damping, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
+            (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
-        let mut half_curvature = S::ZERO;
+        let (mut steepness, mut half_curvature) = (S::ZERO, S::ZERO);
         for ((gain, curve), course) in gains.iter().zip(&element.curves).zip(&element.gains) {
-            let (value, steepness, bend) = curve.at(time, lengthening, velocity);
+            let (value, steep, bend) = curve.at(time, lengthening, velocity);
             force = force + *gain * value;
-            damping = damping + *gain * steepness;
+            steepness = steepness + *gain * steep;
             half_curvature = half_curvature + *gain * bend;
             rise = rise + course.change * value;
         }
         if force < S::ZERO {
-            (force, damping, elastic, rise, half_curvature) =
-                (S::ZERO, S::ZERO, S::ZERO, S::ZERO, S::ZERO);
+            (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
+            (steepness, half_curvature) = (S::ZERO, S::ZERO);
         }
 
         let balance = constant + slope * velocity + force;
-        let correction = balance.halley(slope + (damping + elastic), half_curvature);
-        let next = velocity - correction;
+        let line = slope + (viscosity + elastic);
+        let steepness = steepness.max(c.least_steepness);
+        let (change, secant) = balance.hyperbola_root(line, steepness, half_curvature);
+        let next = velocity + change;
+        let damping = viscosity + steepness * secant;
         let middle = if lengthening {
             next.max(S::ZERO).min(c.speed)
         } else {

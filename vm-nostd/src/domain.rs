@@ -159,12 +159,10 @@ pub(crate) fn admit_one<T: Copy + PartialOrd>(
     instead: T,
     is_finite: impl Fn(T) -> bool,
 ) -> (T, Admission) {
+    if range.contains(value) {
+        return (value, Admission::AsIs);
+    }
     let is_number = value.partial_cmp(&value).is_some();
-    let (clipped, changed) = range.clip(if is_number { value } else { instead });
-    let admission = match (is_finite(value), changed) {
-        (false, _) => Admission::NotFinite,
-        (true, true) => Admission::Clipped,
-        (true, false) => Admission::AsIs,
-    };
-    (clipped, admission)
+    let (clipped, _) = range.clip(if is_number { value } else { instead });
+    (clipped, if is_finite(value) { Admission::Clipped } else { Admission::NotFinite })
 }

@@ -139,7 +139,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
             compression: Compression::new(&elements.compression, step),
-            contraction: Contraction::new(params, step, R::Coefficients::FORCE_JUMPS),
+            contraction: Contraction::new(params, step),
             max_isometric_force: S::ONE.force(&S::force_factor(params.max_isometric_force())),
             force: S::force_factor(params.max_isometric_force()),
             tick_rate: S::factor(1.0 / step.seconds()),

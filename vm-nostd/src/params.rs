@@ -138,7 +138,7 @@ const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 /// Fields that are refused for what follows from them.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Fields that fixed point refuses for what follows from them.
-const INERTIA: &str = "fascicle_length: inertia in the first substep, F0 s/L_ce0";
+const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
 const TOE_FORCE: &str = "tendon.toe: stiffness times toe, F0";
 /// The force that a tendon must be able to carry, F0.

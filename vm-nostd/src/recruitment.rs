@@ -52,8 +52,6 @@ pub trait RecruitmentState<S: Scalar>: Copy + Debug + PartialEq {
 pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     /// Whether the passive force, filament compression included, is kept from pushing on its own.
     const PASSIVE_ONLY_PULLS: bool;
-    /// Whether the force of the filaments may jump where a tick begins.
-    const FORCE_JUMPS: bool;
 
     type Units;
     type State;

@@ -110,10 +110,12 @@ pub trait Scalar:
     /// `1/(1 + factor self)`, whose denominator is positive.
     #[must_use]
     fn of_one_and(self, factor: Self) -> Self;
-    /// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's, from a residual `self`,
-    /// its positive slope and half its curvature.
-    #[must_use]
-    fn halley(self, slope: Self, half_curvature: Self) -> Self;
+    /// Where a straight line and a hyperbola make up for `self`: the root u of
+    /// `self` + `line` u + h(u) = 0, and h(u)/(`steepness` u), the secant's share of the steepness.
+    ///
+    /// h(u) = `steepness` u/(1 + bend u) has half the curvature `half_curvature` at 0, and the root
+    /// is the one that its branch through 0 has. `line` and `steepness` are positive.
+    fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self);
 
     /// A slow value that is now `self`.
     fn slow(self) -> Self::Slow;

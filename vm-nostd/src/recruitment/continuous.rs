@@ -51,7 +51,6 @@ summed!([S: Scalar, const N: usize] Coefficients<S, N> { rise, fall, firing, uni
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = false;
-    const FORCE_JUMPS: bool = false;
 
     type Units = ();
     type State = LumpedState<S, N>;

@@ -83,7 +83,6 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
     for Coefficients<S, A, UNITS>
 {
     const PASSIVE_ONLY_PULLS: bool = false;
-    const FORCE_JUMPS: bool = false;
 
     type Units = MotorUnits<UNITS>;
     type State = DiscreteState<S, A, UNITS>;

@@ -48,8 +48,6 @@ summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = true;
-    /// Af follows the stimulation frequency at once.
-    const FORCE_JUMPS: bool = true;
 
     type Units = ();
     type State = LumpedState<S, N>;

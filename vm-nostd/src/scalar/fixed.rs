@@ -8,6 +8,7 @@ mod mantissa;
 mod number;
 mod pieces;
 mod quotient;
+mod root;
 
 pub use factor::Factor;
 pub use number::Fixed;
@@ -115,6 +116,7 @@ impl Scalar for Fixed {
     fn ln(self) -> Self {
         Self::from_bits(mantissa::ln(self.to_bits()))
     }
+    #[inline(always)]
     fn softplus(self) -> (Self, Self) {
         let (value, slope) = pieces::softplus(self.to_bits());
         (Self::from_bits(value), Self::from_bits(slope))
@@ -127,10 +129,11 @@ impl Scalar for Fixed {
     fn of_one_and(self, factor: Self) -> Self {
         Self::from_bits(quotient::of_one_and(factor.to_bits(), self.to_bits()))
     }
-    #[inline(always)]
-    fn halley(self, slope: Self, half_curvature: Self) -> Self {
-        let [residual, slope, curvature] = [self, slope, half_curvature].map(Self::to_bits);
-        Self::from_bits(quotient::halley(residual, slope, curvature))
+    fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self) {
+        let [residual, line, steepness, half_curvature] =
+            [self, line, steepness, half_curvature].map(Self::to_bits);
+        let (root, share) = root::hyperbola_root(residual, line, steepness, half_curvature);
+        (Self::from_bits(root), Self::from_bits(share))
     }
 
     fn slow(self) -> i64 {
@@ -239,8 +242,13 @@ impl Scalar for Fixed {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn tables_take_3152_bytes() {
-        let kernels = [super::exponential::TABLE_BYTES, super::mantissa::TABLE_BYTES];
-        assert_eq!(kernels.iter().sum::<usize>() + super::pieces::TABLE_BYTES, 3152);
+    fn tables_take_3664_bytes() {
+        let kernels = [
+            super::exponential::TABLE_BYTES,
+            super::mantissa::TABLE_BYTES,
+            super::pieces::TABLE_BYTES,
+            super::root::TABLE_BYTES,
+        ];
+        assert_eq!(kernels.iter().sum::<usize>(), 3664);
     }
 }

@@ -83,10 +83,25 @@ macro_rules! float {
             fn of_one_and(self, factor: Self) -> Self {
                 1.0 / (1.0 + factor * self)
             }
-            fn halley(self, slope: Self, half_curvature: Self) -> Self {
-                let square = slope * slope;
-                let reduced = square - self * half_curvature;
-                self * slope / Scalar::max(reduced, square * 0.5)
+            #[inline(always)]
+            fn hyperbola_root(
+                self,
+                line: Self,
+                steepness: Self,
+                half_curvature: Self,
+            ) -> (Self, Self) {
+                // Times steepness² (1 + bend u) it is quadratic; bend = -half_curvature/steepness.
+                let straight = steepness * line;
+                let square = steepness * steepness;
+                let bent = self * half_curvature;
+                let linear = straight + square - bent;
+                let discriminant = linear * linear + 4.0 * straight * bent;
+                let root = $kernels::square_root(Scalar::max(discriminant, 0.0));
+                // Neither is less but by rounding, where both parts of a sum are large.
+                let whole = Scalar::max(linear + root, straight);
+                let after = Scalar::max(whole + 2.0 * bent, square);
+                let reciprocal = 1.0 / (whole * after);
+                (-2.0 * self * steepness * (after * reciprocal), whole * (whole * reciprocal))
             }
 
             fn abs(self) -> Self {

@@ -33,7 +33,7 @@ pub(super) const fn one_minus_exp(x: f64) -> f64 {
     sum
 }
 
-/// ln(1 + x) for -0.5 <= x <= 1, accurate near 0: 2 artanh(x/(2 + x)).
+/// ln(1 + x) for -0.75 <= x <= 1, accurate near 0: 2 artanh(x/(2 + x)).
 pub(super) const fn ln_1p(x: f64) -> f64 {
     let z = x / (2.0 + x);
     let (mut power, mut sum, mut n) = (z, 0.0, 1.0);
@@ -56,7 +56,7 @@ mod tests {
             assert!((exp(x) / x.exp() - 1.0).abs() < 3e-13, "exp {x}");
             let positive = x.abs() + 1e-9;
             assert!((one_minus_exp(positive) / -(-positive).exp_m1() - 1.0).abs() < 1e-13);
-            let small = (x / 100.0).max(-0.5);
+            let small = (x / 100.0).max(-0.75);
             assert!((ln_1p(small) - small.ln_1p()).abs() <= 1e-15 * small.abs(), "ln_1p {small}");
         }
     }

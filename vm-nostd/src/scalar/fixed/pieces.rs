@@ -23,6 +23,7 @@ const fn node(value: f64, slope: f64) -> Node {
 /// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
 /// differences of values, and all coefficients below 2^29. The place within a piece is a share
 /// in Q0.31, the product with it Q3.29 before it is doubled.
+#[inline(always)]
 fn between(nodes: &[Node], place: u32) -> Option<(i32, i32)> {
     let index = (place >> PLACE_BITS) as usize;
     let [(start, first), (end, last)] = *nodes.get(index..)?.first_chunk()?;
@@ -61,6 +62,7 @@ static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
 };
 
 /// ln(e^x + 1), saturated, within 3 units, and the logistic function of x, within 3e-6.
+#[inline(always)]
 pub(super) fn softplus(x: i32) -> (i32, i32) {
     let (tail, slope) = between(&SOFTPLUS, x.unsigned_abs()).map_or((0, 0), in_units);
     if x > 0 { (x.saturating_add(tail), super::number::ONE + slope) } else { (tail, -slope) }

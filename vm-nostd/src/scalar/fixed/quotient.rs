@@ -44,7 +44,7 @@ fn scaled_back(reciprocal: u32, shift: i32) -> i32 {
 
 /// Two words as one, shifted left by at most 31 bits.
 #[inline(always)]
-fn word((high, low): (i32, u32), left: u32) -> i32 {
+pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
@@ -62,25 +62,6 @@ pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
     let zeros = sum.0.leading_zeros();
     let reciprocal = mantissa::reciprocal(word(sum, zeros) as u32);
     scaled_back(reciprocal, 22 - zeros as i32)
-}
-
-/// Halley's correction r r'/(r'² - r r''/2), at most twice Newton's; saturated.
-///
-/// # Scaling and overflow
-/// All products are Q16.48 and at most 2^62. Numerator and denominator are shifted left together
-/// until one of them has only its sign before the first bit, and cut to 32 bits.
-#[inline(always)]
-pub(super) fn halley(residual: i32, slope: i32, half_curvature: i32) -> i32 {
-    let slope = i64::from(slope.max(1));
-    let (square, bend) = (slope * slope, i64::from(residual) * i64::from(half_curvature));
-    let numerator = i64::from(residual) * slope;
-    let denominator = (square - bend).max(square >> 1);
-    let words = |wide: i64| ((wide >> 32) as i32, wide as u32);
-    let (numerator, denominator) = (words(numerator), words(denominator));
-    let sign = numerator.0 >> 31;
-    let zeros = ((numerator.0 ^ sign) | denominator.0).leading_zeros();
-    let left = zeros.saturating_sub(1);
-    ratio(word(numerator, left), word(denominator, left))
 }
 
 #[cfg(test)]
@@ -128,28 +109,6 @@ mod tests {
                     if sum < 2_f64.powi(-7) { exact * exact * 2_f64.powi(-16) } else { 0.0 };
                 let bound = 2_f64.powi(-24) * (1.0 + exact / 16.0) + least;
                 assert!((found - exact).abs() <= bound, "{d} {v}: {found} {exact}");
-            }
-        }
-    }
-
-    #[test]
-    fn corrections_are_halleys_and_at_most_twice_newtons() {
-        let q = |x: f64| (x * UNIT).round() as i32;
-        for slope in [0.02, 0.3, 0.5, 2.0, 40.0] {
-            for curvature in [-40.0, -2.0, 0.0, 0.1, 5.0] {
-                for step in -1000..=1000 {
-                    let residual = f64::from(step) * 0.12;
-                    let newton = residual / slope;
-                    let reduced = slope * slope - residual * curvature;
-                    let exact = residual * slope / reduced.max(0.5 * slope * slope);
-                    let found = f64::from(halley(q(residual), q(slope), q(curvature))) / UNIT;
-                    let expected = exact.clamp(-128.0, 128.0);
-                    // The slope's own rounding is 3e-8, and counts twice; the curvature's counts
-                    // where what it reduces is small.
-                    let bound = 1e-6 + expected.abs() * (1e-6 + 1.2e-7 / slope);
-                    assert!((found - expected).abs() <= bound, "{residual} {slope} {curvature}");
-                    assert!(found.abs() <= 2.0 * newton.abs() * (1.0 + 1e-5) + 1e-6);
-                }
             }
         }
     }

@@ -42,6 +42,16 @@ pub(super) fn one_minus_exp(x: f32) -> f32 {
     half * (2.0 - half)
 }
 
+/// √x of a number that is not negative, within 5e-6 of its value from 1e-37 on; at most 1e-18 below.
+#[inline(always)]
+pub(super) fn square_root(x: f32) -> f32 {
+    // 1/√x to 3.5 % from the exponent's half; each of Newton's steps squares the error.
+    let guess = f32::from_bits(0x5f37_59df - (x.to_bits() >> 1));
+    let half = 0.5 * x;
+    let better = guess * (1.5 - half * guess * guess);
+    x * (better * (1.5 - half * better * better))
+}
+
 const LOGARITHM_BITS: u32 = 5;
 const LOGARITHMS: usize = 1 << LOGARITHM_BITS;
 const FRACTION_BITS: u32 = 23;

@@ -1,0 +1,134 @@
+//! Where a line and a hyperbola make up for a residual: one quadratic equation, and its square root.
+
+use super::number::{exact, high};
+use super::quotient::{ratio, word};
+use crate::scalar::series;
+
+/// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend = -half_curvature/steepness,
+/// and 1/(1 + bend u), in Q8.24, saturated; line and steepness are positive.
+///
+/// # Scaling and overflow
+/// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has only
+/// its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
+/// discriminant, a square of that and four times a product, below 2^60.
+pub(super) fn hyperbola_root(
+    residual: i32,
+    line: i32,
+    steepness: i32,
+    half_curvature: i32,
+) -> (i32, i32) {
+    let products = [
+        exact(steepness, line),
+        exact(steepness, steepness),
+        exact(residual, half_curvature),
+        exact(residual, steepness),
+    ];
+    let bits = products.iter().fold(0, |bits, (high, _)| bits | (high ^ (high >> 31)));
+    let left = bits.leading_zeros() - 1;
+    let [straight, square, bent, residual] = products.map(|product| word(product, left) >> 3);
+    let linear = straight + square - bent;
+    let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
+    let discriminant = wide(linear, linear) + 4 * wide(straight, bent);
+    let root = square_root(discriminant.max(1) as u64) as i32;
+    // Neither is less but by rounding, where both parts of a sum are large.
+    let whole = (linear + root).max(straight).max(1);
+    let after = (whole + 2 * bent).max(square).max(1);
+    (ratio(-2 * residual, whole), ratio(whole, after))
+}
+
+/// Bits of the index into the table.
+const INDEX_BITS: u32 = 7;
+const ENTRIES: usize = 1 << INDEX_BITS;
+
+/// 1/√m at the middle of each 128th of 0..1, Q1.31; none for the first quarter.
+static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
+    let mut table = [0; ENTRIES];
+    let mut index = ENTRIES / 4;
+    while index < ENTRIES {
+        let middle = (index as f64 + 0.5) / ENTRIES as f64;
+        table[index] = (series::exp(-0.5 * series::ln_1p(middle - 1.0)) * 2_147_483_648.0) as u32;
+        index += 1;
+    }
+    table
+};
+
+/// What the table takes.
+#[cfg(test)]
+pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
+
+/// √x for 1 <= x < 2^60, within 2^-25 of its value and a unit.
+///
+/// # Scaling and overflow
+/// x, shifted left by an even number z of bits, 4 to 62, until one of its first two is set, is m in
+/// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y c - 1
+/// below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
+fn square_root(x: u64) -> u32 {
+    let zeros = x.leading_zeros() & !1;
+    let m = (x << zeros >> 32) as u32;
+    let c = RECIPROCAL_ROOTS[(m >> (32 - INDEX_BITS)) as usize];
+    let y = ((u64::from(m) * u64::from(c)) >> 32) as u32;
+    let d = ((u64::from(y) * u64::from(c)) >> 30) as u32 as i32;
+    // 3/8 in Q0.32, less 5/16 of d.
+    let curved = 0x6000_0000 - (d >> 2) - (d >> 4);
+    let beyond = (d >> 1) - high(high(d, d), curved);
+    let root = y.wrapping_add_signed(-(high((y >> 1) as i32, beyond) << 1));
+    root >> (zeros / 2 - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::every::UNIT;
+    use super::*;
+
+    #[test]
+    fn square_roots_are_within_2_to_the_minus_25_and_a_unit() {
+        let near = (0..60).flat_map(|bits| (0..1000_u64).map(move |i| (1 << bits) + i));
+        let spread = (1..1_000_000_u64).map(|i| i * i * i % (1 << 60) + 1);
+        for x in near.chain(spread).chain([(1 << 60) - 1]) {
+            let exact = (x as f64).sqrt();
+            let found = f64::from(square_root(x));
+            let bound = 1.0 + exact * 2_f64.powi(-25);
+            assert!((found - exact).abs() <= bound, "{x}: {found} {exact}");
+        }
+    }
+
+    #[test]
+    fn roots_make_up_for_the_residual() {
+        let q = |x: f64| (x * UNIT).round() as i32;
+        let f = |x: i32| f64::from(x) / UNIT;
+        for line in [0.02, 0.1, 3.0, 40.0] {
+            for steepness in [1e-5, 0.01, 0.3, 5.0] {
+                for bend in [-2.0, -0.1, 0.0, 0.1, 2.9] {
+                    for step in -1000..=1000 {
+                        let residual = q(f64::from(step) * 0.004);
+                        let (k, s, h) = (q(line), q(steepness), q(-bend * steepness));
+                        let found = hyperbola_root(residual, k, s, h);
+                        // The same in f64, from the rounded numbers.
+                        let (residual, k, s, h) = (f(residual), f(k), f(s), f(h));
+                        let parts = [s * k, s * s, residual * h, residual * s];
+                        let linear = parts[0] + parts[1] - parts[2];
+                        let root = (linear * linear + 4.0 * parts[0] * parts[2]).max(0.0).sqrt();
+                        let whole = linear + root;
+                        let exact = [-2.0 * parts[3] / whole, whole / (whole + 2.0 * parts[2])];
+                        // What the largest product, or the smallest, is cut to, and the square
+                        // root's error.
+                        let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+                        let lost = (most + root) * 2_f64.powi(-24) + 2_f64.powi(-43);
+                        let left = [whole, whole + 2.0 * parts[2]];
+                        for ((found, exact), left) in
+                            [found.0, found.1].map(f).into_iter().zip(exact).zip(left)
+                        {
+                            let expected = exact.clamp(-128.0, 128.0);
+                            let relative = lost / left.min(whole);
+                            let bound = 2e-7 + 3.0 * (1.0 + expected.abs()) * relative;
+                            assert!(
+                                relative > 0.1 || (found - expected).abs() <= bound,
+                                "{residual} {k} {s} {h}: {found} {expected} {bound:e}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
