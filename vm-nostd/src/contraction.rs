@@ -32,7 +32,7 @@ use decay::Decay;
 /// followed goes with the substep.
 const LONGEST_SUBSTEP: f64 = 0.5e-3;
 const LONGEST_FINE_SUBSTEP: f64 = 0.15e-3;
-const COARSE_TICK: f64 = 1e-3;
+const COARSE_TICK: f64 = 0.999e-3;
 /// The substeps resolve the ringing of a passive muscle: of angular frequency w, and of amplitude
 /// A in F0 where the path's speed jumps by 1 L_ce0/s, it is w h √A at most. The error of a step
 /// that is second order goes with the square of this.
@@ -41,7 +41,7 @@ const RINGING: f64 = 0.35;
 const MOST_SUBSTEPS: u8 = 40;
 /// w h/2 that inertia is fitted for at most: at pi/2 there would be none left.
 const FASTEST_RINGING: f64 = 1.2;
-/// The mechanics count as settled if no balance before a correction is worse, F0.
+/// The mechanics count as settled if no balance at a velocity foreseen is worse, F0.
 const SETTLED: f64 = 0.5;
 /// What the filaments resist a change of velocity with counts as no less, F0 s/L_ce0: far below any
 /// viscosity.

@@ -95,11 +95,14 @@ macro_rules! float {
                 let square = steepness * steepness;
                 let bent = self * half_curvature;
                 let linear = straight + square - bent;
-                let discriminant = linear * linear + 4.0 * straight * bent;
-                let root = $kernels::square_root(Scalar::max(discriminant, 0.0));
-                // Neither is less but by rounding, where both parts of a sum are large.
-                let whole = Scalar::max(linear + root, straight);
-                let after = Scalar::max(whole + 2.0 * bent, square);
+                // linear² + 4 straight bent, as a sum of what is positive.
+                let difference = straight + bent - square;
+                let discriminant = difference * difference + 4.0 * straight * square;
+                let root = $kernels::square_root(discriminant);
+                // The root is |difference| at least: neither sum is less but by rounding, where
+                // both its parts are large.
+                let whole = Scalar::max(linear + root, 2.0 * straight);
+                let after = Scalar::max(whole + 2.0 * bent, 2.0 * square);
                 let reciprocal = 1.0 / (whole * after);
                 (-2.0 * self * steepness * (after * reciprocal), whole * (whole * reciprocal))
             }
@@ -211,3 +214,48 @@ macro_rules! float {
 
 float!(f32, u32, single);
 float!(f64, u64, double);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Calls `check` with a residual, a line, a steepness and half a curvature, over all that a muscle
+    /// may have.
+    fn over_balances(check: impl Fn(f64, f64, f64, f64)) {
+        for line in [2e-3, 0.05, 1.0, 50.0] {
+            for steepness in [1e-5, 0.02, 1.0, 30.0] {
+                for bend in [-3.0, -0.2, 0.0, 0.3, 20.0] {
+                    for step in -500..=500 {
+                        check(f64::from(step) * 0.01, line, steepness, -bend * steepness);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn roots_make_up_for_the_residual_on_the_branch_through_0() {
+        over_balances(|residual, line, steepness, half_curvature| {
+            let (root, share) = residual.hyperbola_root(line, steepness, half_curvature);
+            let below = 1.0 - half_curvature / steepness * root;
+            assert!(below > 0.0, "{residual} {line} {steepness} {half_curvature}: {root}");
+            assert!((share * below - 1.0).abs() < 1e-4, "{share} {below}");
+            let left = residual + line * root + steepness * share * root;
+            assert!(left.abs() <= 1e-6 * residual.abs(), "{root}: {left} of {residual}");
+        });
+    }
+
+    #[test]
+    fn roots_in_f32_are_those_in_f64_but_for_what_cancels() {
+        over_balances(|residual, line, steepness, half_curvature| {
+            let [r, l, s, h] = [residual, line, steepness, half_curvature].map(|x| x as f32);
+            let (root, _) = r.hyperbola_root(l, s, h);
+            let [r, l, s, h] = [r, l, s, h].map(f64::from);
+            let (exact, _) = r.hyperbola_root(l, s, h);
+            let error = (f64::from(root) - exact).abs();
+            // Beside a large product the line's part is rounded.
+            let bound = 1e-5 * (1.0 + (r * h).abs() / (l * s)) * exact.abs();
+            assert!(error <= bound, "{r} {l} {s} {h}: {root} {exact}");
+        });
+    }
+}

@@ -28,11 +28,14 @@ pub(super) fn hyperbola_root(
     let [straight, square, bent, residual] = products.map(|product| word(product, left) >> 3);
     let linear = straight + square - bent;
     let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
-    let discriminant = wide(linear, linear) + 4 * wide(straight, bent);
+    // linear² + 4 straight bent, as a sum of what is positive.
+    let difference = straight + bent - square;
+    let discriminant = wide(difference, difference) + 4 * wide(straight, square);
     let root = square_root(discriminant.max(1) as u64) as i32;
-    // Neither is less but by rounding, where both parts of a sum are large.
-    let whole = (linear + root).max(straight).max(1);
-    let after = (whole + 2 * bent).max(square).max(1);
+    // The root is |difference| at least: neither sum is less but by rounding, where both its parts
+    // are large.
+    let whole = (linear + root).max(2 * straight).max(1);
+    let after = (whole + 2 * bent).max(2 * square).max(1);
     (ratio(-2 * residual, whole), ratio(whole, after))
 }
 
@@ -61,7 +64,8 @@ pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 /// # Scaling and overflow
 /// x, shifted left by an even number z of bits, 4 to 62, until one of its first two is set, is m in
 /// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y c - 1
-/// below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
+/// below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit 30 on.
+/// y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
 fn square_root(x: u64) -> u32 {
     let zeros = x.leading_zeros() & !1;
     let m = (x << zeros >> 32) as u32;
@@ -107,7 +111,8 @@ mod tests {
                         let (residual, k, s, h) = (f(residual), f(k), f(s), f(h));
                         let parts = [s * k, s * s, residual * h, residual * s];
                         let linear = parts[0] + parts[1] - parts[2];
-                        let root = (linear * linear + 4.0 * parts[0] * parts[2]).max(0.0).sqrt();
+                        let difference = parts[0] + parts[2] - parts[1];
+                        let root = difference.hypot((4.0 * parts[0] * parts[1]).sqrt());
                         let whole = linear + root;
                         let exact = [-2.0 * parts[3] / whole, whole / (whole + 2.0 * parts[2])];
                         // What the largest product, or the smallest, is cut to, and the square
@@ -128,6 +133,20 @@ mod tests {
                         }
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn whatever_comes_the_root_has_the_sign_that_makes_up_for_it() {
+        let any = [i32::MIN, i32::MIN + 1, -1 << 24, -1, 0, 1, 1 << 24, i32::MAX - 1, i32::MAX];
+        let positive = [1, 168, 1 << 20, 1 << 24, i32::MAX];
+        for (residual, half_curvature) in any.iter().flat_map(|a| any.map(|b| (*a, b))) {
+            for (line, steepness) in positive.iter().flat_map(|a| positive.map(|b| (*a, b))) {
+                let (root, share) = hyperbola_root(residual, line, steepness, half_curvature);
+                let what = format!("{residual} {line} {steepness} {half_curvature}");
+                assert!(i64::from(root) * i64::from(residual) <= 0, "{what}: {root}");
+                assert!(share >= 0, "{what}: {share}");
             }
         }
     }

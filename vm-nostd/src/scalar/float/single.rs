@@ -214,6 +214,18 @@ mod tests {
     }
 
     #[test]
+    fn square_roots_are_within_5e6th_of_their_value() {
+        for scale in [-122, -60, -1, 0, 1, 2, 33, 126] {
+            let power = 2_f64.powi(scale);
+            let error = |x: f32, exact: f64| (f64::from(square_root(x)) / exact.sqrt() - 1.0).abs();
+            let found = worst(power, 2.0 * power, error);
+            assert!(found <= 5e-6, "{found:e} at 2^{scale}");
+        }
+        assert_eq!(square_root(0.0), 0.0);
+        assert!(square_root(1e-40) < 1e-18);
+    }
+
+    #[test]
     fn logarithms_are_within_15e8th_and_1e7th_of_their_value() {
         for scale in [-120, -24, -3, -1, 0, 1, 5, 90] {
             let power = 2_f64.powi(scale);
