@@ -57,7 +57,8 @@ mod tests {
             let positive = x.abs() + 1e-9;
             assert!((one_minus_exp(positive) / -(-positive).exp_m1() - 1.0).abs() < 1e-13);
             let small = (x / 100.0).max(-0.75);
-            assert!((ln_1p(small) - small.ln_1p()).abs() <= 1e-15 * small.abs(), "ln_1p {small}");
+            let exact = small.ln_1p();
+            assert!((ln_1p(small) - exact).abs() <= 1.5e-15 * exact.abs(), "ln_1p {small}");
         }
     }
 }
