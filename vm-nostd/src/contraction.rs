@@ -4,9 +4,9 @@
 //! Active, the fascicles follow the tendon within 10 to 50 µs; passive, they ring on it at some
 //! 400 Hz. One implicit midpoint rule, fitted to both ends, does for both: a substep's forces are
 //! balanced once, at its middle, for the mean velocity there, with the branch of FV told by the
-//! sign of the balance at V = 0. From the velocity foreseen, FV is followed as the hyperbola that has its
-//! slope and curvature there, which it is where one fibre type acts alone: what is left to solve is
-//! quadratic, and its root right even where the path's speed jumps.
+//! sign of the balance at V = 0. From the velocity foreseen, FV is followed as the hyperbola that
+//! has its slope and curvature there, which it is where one fibre type acts alone: what is left to
+//! solve is quadratic, and its root right even where the path's speed jumps.
 //!
 //! - Ringing: the rule turns the phase of an oscillation by 2 atan(w h/2) instead of w h; with an
 //!   inertia that is less by as much as the tendon is taut, it turns it by w h on a taut tendon, and
@@ -32,6 +32,7 @@ use decay::Decay;
 /// followed goes with the substep.
 const LONGEST_SUBSTEP: f64 = 0.5e-3;
 const LONGEST_FINE_SUBSTEP: f64 = 0.15e-3;
+/// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;
 /// The substeps resolve the ringing of a passive muscle: of angular frequency w, and of amplitude
 /// A in F0 where the path's speed jumps by 1 L_ce0/s, it is w h √A at most. The error of a step
@@ -44,7 +45,7 @@ const FASTEST_RINGING: f64 = 1.2;
 /// The mechanics count as settled if no balance at a velocity foreseen is worse, F0.
 const SETTLED: f64 = 0.5;
 /// What the filaments resist a change of velocity with counts as no less, F0 s/L_ce0: far below any
-/// viscosity.
+/// viscosity. Where it is less, their curve counts as straighter than it is.
 const LEAST_STEEPNESS: f64 = 1e-5;
 
 /// Motion of the fascicles since the tick's start.

@@ -43,7 +43,8 @@ pub(super) fn hyperbola_root(
 const INDEX_BITS: u32 = 7;
 const ENTRIES: usize = 1 << INDEX_BITS;
 
-/// 1/√m at the middle of each 128th of 0..1, Q1.31; none for the first quarter.
+/// 1/√m at the middle of each 128th of 0..1, Q1.31. No m is in the first quarter: its entries are there
+/// so that an index of seven bits needs no check, and nothing in a tick can panic.
 static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = ENTRIES / 4;
