@@ -127,7 +127,7 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
         ("fraction = 0.6", "fraction = 0.7", &["fraction = 1.1", "add to 1"]),
         ("fraction = 0.6", "fraction = -0.6", &["fiber[0].fraction = -0.6", "between"]),
         ("table-1/slow", "table-1/slower", &["fiber[0].preset", "slower", "feline-vm4/fast"]),
-        ("fraction = 0.4", "fraction = 0.4\nbeta = -1", &["fiber[1].beta = -1", "0.1 and 10"]),
+        ("fraction = 0.4", "fraction = 0.4\nbeta = -1", &["fiber[1].beta = -1", "0.1 and 5"]),
         ("fraction = 0.4", "fraction = 0.4\nbeta = nan", &["fiber[1].beta = nan", "finite"]),
         ("fraction = 0.4", "fraction = 0.4\nbeta = \"b\"", &["fiber[1].beta", "a number"]),
         ("fraction = 0.4", "fraction = 0.4\nbat = 1", &["fiber[1].bat = 1", "unknown key"]),

@@ -72,7 +72,7 @@ fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> {
 /// A fibre type with any coefficients that are documented to be allowed.
 fn any_type() -> impl Strategy<Value = FiberType> {
     let frequencies = (magnitude(0.5, 200.0), 0.0..5.0_f64, 0.0..5.0_f64);
-    let length = (magnitude(0.1, 10.0), magnitude(0.1, 10.0), 1.0..10.0_f64);
+    let length = (magnitude(0.1, 10.0), magnitude(0.1, 5.0), 1.0..10.0_f64);
     let velocity = (
         magnitude(0.1, 100.0),
         -10.0..10.0_f64,

@@ -40,7 +40,7 @@ const OF_FIBER: &[Row] = &[
     ("minimum_frequency", 0.0, 5.0, |p, x| p.fibers[1].fiber_type.minimum_frequency = x),
     ("maximum_frequency", 0.5, 10.0, |p, x| p.fibers[1].fiber_type.maximum_frequency = x),
     ("force_length.width", 0.1, 10.0, |p, x| p.fibers[1].fiber_type.force_length.width = x),
-    ("force_length.skewness", 0.1, 10.0, |p, x| {
+    ("force_length.skewness", 0.1, 5.0, |p, x| {
         p.fibers[1].fiber_type.force_length.skewness = x;
     }),
     ("force_length.roundness", 1.0, 10.0, |p, x| {

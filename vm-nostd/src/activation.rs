@@ -110,8 +110,7 @@ impl<S: Scalar> ActivationCurve<S> {
         if frequency <= S::ZERO {
             return Course::constant(S::ZERO);
         }
-        // Kept in the logarithm's domain.
-        let logarithm = (frequency * self.per_scale).max(S::LEAST).ln();
+        let logarithm = (frequency * self.per_scale).ln();
         let (value, growth) = (self.exponent * logarithm).weibull();
         // By ln of the power it is the growth; d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
         let relative = frequency_change.ratio(frequency).max(-self.steepest).min(self.steepest);

@@ -19,6 +19,7 @@ mod decay;
 use crate::checksum::summed;
 use crate::domain::MAXIMUM_SPEED;
 use crate::force_velocity::VelocityCurve;
+use crate::muscle::Fiber;
 use crate::params::MuscleParams;
 use crate::recruitment::{Course, RecruitmentTick};
 use crate::scalar::Scalar;
@@ -72,11 +73,12 @@ pub(crate) struct Advanced<S> {
 /// F_ce' = max(0, passive + Σ gain_i FV_i), forces in F0; in some modes the passive force is itself
 /// 0 at least.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Contractile<'a, S, const N: usize> {
+pub(crate) struct Contractile<'a, S: Scalar, const N: usize> {
     /// What multiplies FV of each type; never negative.
     pub(crate) gains: [Course<S>; N],
-    /// FV of each type.
-    pub(crate) curves: [VelocityCurve<'a, S>; N],
+    /// FV of each type, and its curve during the tick.
+    pub(crate) fibers: &'a [Fiber<S>; N],
+    pub(crate) curves: [VelocityCurve<S>; N],
     /// Passive force at the length the tick starts with and V = 0.
     pub(crate) passive: Course<S>,
     /// Its slope, F0 per tick at 1 L_ce0/s.
@@ -272,8 +274,9 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
         let (mut steepness, mut half_curvature) = (S::ZERO, S::ZERO);
-        for ((gain, curve), course) in gains.iter().zip(&element.curves).zip(&element.gains) {
-            let (value, steep, bend) = curve.at(time, lengthening, velocity);
+        let types = element.fibers.iter().zip(&element.curves);
+        for ((gain, course), (fiber, curve)) in gains.iter().zip(&element.gains).zip(types) {
+            let (value, steep, bend) = fiber.force_velocity.on(curve, time, lengthening, velocity);
             force = force + *gain * value;
             steepness = steepness + *gain * steep;
             half_curvature = half_curvature + *gain * bend;

@@ -97,9 +97,22 @@ pub(crate) struct Domain<S: Scalar> {
     pub(crate) fascicle_length: Range<S>,
     /// L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
+    /// Lengths that the state can hold and where the equations of the filaments hold, L_ce0.
+    usual: Range<S>,
 }
 
-summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity });
+/// Where the fascicles are at the middle of a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Midway<S> {
+    /// As near as the state can hold, L_ce0.
+    pub(crate) length: S,
+    /// The nearest to that where the equations of the filaments hold, L_ce0.
+    pub(crate) inside: S,
+    /// Neither had to be changed.
+    pub(crate) usual: bool,
+}
+
+summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity, usual });
 
 impl<S: Scalar> Domain<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {
@@ -113,7 +126,25 @@ impl<S: Scalar> Domain<S> {
             shortening_velocity: S::from_f64(params.shortening_velocity()),
             fascicle_length: Range::new((filaments.0, longest), S::from_f64),
             fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
+            usual: Range::new((filaments.0, Scalar::min(filaments.1, longest)), S::from_f64),
         }
+    }
+
+    /// Where the fascicles are taken to be, of whose middle of a tick a length (L_ce0) was foreseen.
+    pub(crate) fn midway(&self, length: S) -> Midway<S> {
+        if self.usual.contains(length) {
+            return Midway { length, inside: length, usual: true };
+        }
+        let (length, _) = self.fascicle_length.clip(length);
+        let (inside, _) = self.filaments.clip(length);
+        Midway { length, inside, usual: false }
+    }
+
+    /// Whether nothing has to be said of a length (L_ce0) and a velocity (L_ce0/s) at a tick's end.
+    pub(crate) fn is_usual(&self, length: S, velocity: S) -> bool {
+        self.usual.contains(length)
+            && velocity > self.shortening_velocity
+            && velocity < self.fascicle_velocity.most
     }
 
     /// The input as the model takes it, and what had to be changed.

@@ -60,9 +60,10 @@ pub(crate) struct Excited<S: Scalar> {
     pub(crate) effective: S::Slow,
 }
 
-/// No fascicle is longer (L_ce0), and no frequency higher (f0.5), when time constants are chosen a
-/// unit for; what is beyond saturates.
+/// No fascicle is longer or shorter (L_ce0), and no frequency higher (f0.5), when time constants are
+/// chosen a unit for; what is beyond saturates.
 const LONGEST_FASCICLE: f64 = 2.0;
+const SHORTEST_FASCICLE: f64 = 0.4;
 const HIGHEST_FREQUENCY: f64 = 100.0;
 /// The greatest that a time constant should be in its unit.
 const ROOM: f64 = 100.0;
@@ -71,8 +72,7 @@ impl<S: Scalar> Excitation<S> {
     pub(crate) fn new(params: &ExcitationParams, step: TimeStep) -> Self {
         let longest = params.rise * LONGEST_FASCICLE * LONGEST_FASCICLE
             + params.rise_per_frequency * HIGHEST_FREQUENCY
-            + params.fall
-            + params.fall_per_activation;
+            + (params.fall + params.fall_per_activation) / SHORTEST_FASCICLE;
         let mut unit = step.seconds();
         while longest > ROOM * unit {
             unit *= 2.0;
@@ -88,9 +88,9 @@ impl<S: Scalar> Excitation<S> {
 
     /// One tick from (`intermediate`, `effective`) towards `drive`.
     ///
-    /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like `fascicle_length`,
-    /// at the tick's middle. In the variable x = ∫dt/Tf the two lags are linear and solved
-    /// exactly; where f_int and f_eff cross within the tick, x is put together from both sides.
+    /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like the fascicle's `length`
+    /// and its reciprocal, at the tick's middle. In the variable x = ∫dt/Tf the two lags are linear and
+    /// solved exactly; where f_int and f_eff cross within the tick, x is put together from both sides.
     #[inline(always)]
     pub(crate) fn advance(
         &self,
@@ -98,45 +98,34 @@ impl<S: Scalar> Excitation<S> {
         drive: S,
         frequency: S,
         slowing: S,
-        fascicle_length: S,
+        (length, reciprocal): (S, S),
     ) -> Excited<S> {
-        // x of a tick, rising and falling, as what is to be divided by what: mostly only one is.
-        let rise_time =
-            self.rise * fascicle_length * fascicle_length + self.rise_per_frequency * frequency;
-        let fall_time = self.fall + self.fall_per_activation * slowing;
-        let rising = (self.tick, rise_time);
-        let falling = (self.tick * fascicle_length, fall_time);
+        let rising = self.rise * length * length + self.rise_per_frequency * frequency;
+        let falling = (self.fall + self.fall_per_activation * slowing) * reciprocal;
 
         let lead = S::of(intermediate) - S::of(effective);
         let excess = S::of(intermediate) - drive;
-        let (now, then) = if lead >= S::ZERO { (rising, falling) } else { (falling, rising) };
-        let before = now.0.ratio(now.1);
-        // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess.
-        let converging = (lead >= S::ZERO) == (excess > S::ZERO);
-        let crosses = converging && lead.abs() < excess.abs() * before;
-        let x = if crosses {
-            // Before they cross, x grows at one rate, and from then on at the other.
-            let left = S::ONE - lead.abs().ratio(excess.abs() * before);
-            let after = then.0.ratio(then.1);
-            lead.abs().ratio(excess.abs()) + after * left
-        } else {
-            before
-        };
+        let rises = lead >= S::ZERO;
+        let (now, then) = if rises { (rising, falling) } else { (falling, rising) };
+        // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess. Until then
+        // x grows at one rate, and for what is left of the tick at the other.
+        let converging = rises == (excess > S::ZERO);
+        let crosses = converging && lead.abs() * now < excess.abs() * self.tick;
+        let (before, rest) =
+            if crosses { (lead.abs().ratio(excess.abs()), then) } else { (S::ZERO, now) };
+        let x = before + (self.tick - before * now).ratio(rest);
 
         let [half, whole] = x.lags();
         let lag = S::of(effective) - drive;
         let effective_after = |lags: Lags<S::Share>| {
-            let moved = S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done));
-            not_negative::<S>(moved)
+            S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done))
         };
+        // By rounding they may come out below 0.
+        let end = effective_after(whole);
         Excited {
-            intermediate: not_negative::<S>(S::moved(intermediate, -excess, whole.done)),
+            intermediate: S::moved(intermediate, -excess, whole.done),
             effective_at_middle: S::of(effective_after(half)),
-            effective: effective_after(whole),
+            effective: if S::of(end) < S::ZERO { S::ZERO.slow() } else { end },
         }
     }
-}
-
-fn not_negative<S: Scalar>(value: S::Slow) -> S::Slow {
-    if S::of(value) < S::ZERO { S::ZERO.slow() } else { value }
 }

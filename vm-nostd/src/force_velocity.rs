@@ -132,12 +132,12 @@ impl<S: Scalar> ForceVelocity<S> {
     ///
     /// Lengthening, FV depends on length as much as FL does: held over the tick, it would make
     /// nearly all of the error at 2 ms.
-    pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<'_, S> {
+    #[inline(always)]
+    pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
         let steepness = a1 + (a2 + a2) * fascicle_length;
         VelocityCurve {
-            relation: self,
             shortening: Course { middle: c0 + c1 * fascicle_length, change: c1 * travel },
             lengthening: Course {
                 middle: a0 + (a1 + a2 * fascicle_length) * fascicle_length,
@@ -149,35 +149,36 @@ impl<S: Scalar> ForceVelocity<S> {
 
 /// FV during one tick. Either branch is (1 + n V)/(1 + d V).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct VelocityCurve<'a, S> {
-    relation: &'a ForceVelocity<S>,
+pub(crate) struct VelocityCurve<S> {
     /// d of the shortening branch.
     shortening: Course<S>,
     /// n of the lengthening branch.
     lengthening: Course<S>,
 }
 
-impl<S: Scalar> VelocityCurve<'_, S> {
-    /// FV, its slope and half its curvature by V, `time` ticks after the tick's middle, on the
-    /// branch named by `lengthening`, at a velocity of that side. Faster than V_max, FV is 0: the
+impl<S: Scalar> ForceVelocity<S> {
+    /// FV, its slope and half its curvature by V, `time` ticks after the middle of the tick of a `curve`,
+    /// on the branch named by `lengthening`, at a velocity of that side. Faster than V_max, FV is 0: the
     /// paper's own expression would push.
     #[inline(always)]
-    pub(crate) fn at(&self, time: S, lengthening: bool, velocity: S) -> (S, S, S) {
+    pub(crate) fn on(
+        &self,
+        curve: &VelocityCurve<S>,
+        time: S,
+        lengthening: bool,
+        velocity: S,
+    ) -> (S, S, S) {
         let (numerator, denominator) = if lengthening {
-            (self.lengthening.at(time), self.relation.per_lengthening)
+            (curve.lengthening.at(time), self.per_lengthening)
         } else {
-            (self.relation.per_maximum, self.shortening.at(time))
+            (self.per_maximum, curve.shortening.at(time))
         };
-        let maximum_velocity = self.relation.maximum_velocity;
-        let inside = velocity.max(maximum_velocity);
-        let reciprocal = inside.of_one_and(denominator);
-        let rise = (numerator - denominator) * reciprocal;
-        let value = S::ONE + rise * inside;
-        if velocity > maximum_velocity {
-            let slope = rise * reciprocal;
-            (value, slope, -(denominator * reciprocal * slope))
-        } else {
-            (value, S::ZERO, S::ZERO)
+        if velocity <= self.maximum_velocity {
+            return (S::ZERO, S::ZERO, S::ZERO);
         }
+        let reciprocal = velocity.of_one_and(denominator);
+        let rise = (numerator - denominator) * reciprocal;
+        let slope = rise * reciprocal;
+        (S::ONE + rise * velocity, slope, -(denominator * reciprocal * slope))
     }
 }

@@ -6,13 +6,13 @@ use crate::contraction::{Contractile, Contraction, Motion};
 use crate::domain::{Domain, Status};
 use crate::error::{ParameterError, within};
 use crate::excitation::Excitation;
-use crate::force_length::ForceLength;
+use crate::force_length::{ForceLength, OptimalLength};
 use crate::force_velocity::ForceVelocity;
 use crate::params::{FiberParams, MuscleParams};
 use crate::passive::{Compression, Parallel};
 use crate::recruitment::{
     Course, EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous,
-    NaturalDiscrete, Recruited, Recruitment, RecruitmentTick,
+    NaturalDiscrete, Recruitment, RecruitmentTick,
 };
 use crate::sag::Sag;
 use crate::scalar::Scalar;
@@ -67,6 +67,7 @@ pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
 pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     domain: Domain<S>,
     recruitment: R::Coefficients,
+    optimal_length: OptimalLength<S>,
     fibers: [Fiber<S>; N],
     parallel: Parallel<S>,
     compression: Compression<S>,
@@ -78,7 +79,7 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     tick_rate: S::Factor,
 }
 
-summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
+summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, optimal_length, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
 
 /// The coefficients of one fibre type.
 #[derive(Clone, Copy, Debug)]
@@ -89,20 +90,20 @@ pub struct Fiber<S: Scalar> {
     yielding: Yielding<S>,
     pub(crate) activation: ActivationFrequency<S>,
     force_length: ForceLength<S>,
-    force_velocity: ForceVelocity<S>,
+    pub(crate) force_velocity: ForceVelocity<S>,
 }
 
 summed!([S: Scalar] Fiber<S> { excitation, sag, yielding, activation, force_length, force_velocity });
 
 impl<S: Scalar> Fiber<S> {
-    fn new(params: &FiberParams, step: TimeStep) -> Self {
+    fn new(params: &FiberParams, domain: (f64, f64), step: TimeStep) -> Self {
         let t = &params.fiber_type;
         Self {
             excitation: Excitation::new(&t.excitation, step),
             sag: Sag::new(t.sag.as_ref(), step),
             yielding: Yielding::new(t.yielding.as_ref(), step),
             activation: ActivationFrequency::new(&t.activation),
-            force_length: ForceLength::new(&t.force_length),
+            force_length: ForceLength::new(&t.force_length, domain),
             force_velocity: ForceVelocity::new(&t.force_velocity),
         }
     }
@@ -136,7 +137,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, units, step)?,
-            fibers: params.fibers.map(|fiber| Fiber::new(&fiber, step)),
+            optimal_length: OptimalLength::new(),
+            fibers: params.fibers.map(|fiber| Fiber::new(&fiber, params.fascicle_domain(), step)),
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
             compression: Compression::new(&elements.compression, step),
             contraction: Contraction::new(params, step),
@@ -158,7 +160,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let mut least = tendon.extension(path_length, lengths.most);
         let mut most = tendon.extension(path_length, lengths.least);
         for _ in 0..REST_BISECTIONS {
-            let extension = (least + most) * S::HALF;
+            let extension = (least + most).half();
             let length = tendon.fascicle_length(path_length, extension);
             // The tendon pulls more, and the parallel element less, the further it is extended.
             if tendon.pull(extension).force > self.parallel.at(length).0 {
@@ -168,7 +170,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             }
         }
         Ok(State {
-            tendon_extension: (least + most) * S::HALF,
+            tendon_extension: (least + most).half(),
             fascicle_velocity: S::ZERO,
             path_length,
             yieldings: [S::ONE.slow(); N],
@@ -242,10 +244,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
 
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let travel = self.contraction.lengthening(state.fascicle_velocity);
-        let (middle, _) = self.domain.fascicle_length.clip(length + travel * S::HALF);
-
-        let (inside, _) = self.domain.filaments.clip(middle);
-        let reciprocal = inside.reciprocal();
+        let midway = self.domain.midway(length + travel.half());
+        let reciprocal = midway.inside.reciprocal();
 
         // Kept at the middles of the ticks, Y needs its target only once, where the tick starts; its
         // change across the tick is taken to be that from the middle before.
@@ -256,16 +256,15 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             let before = S::of(*kept);
             *kept = fiber.yielding.advance(*kept, state.fascicle_velocity);
             let middle = S::of(*kept);
-            let half_change = (middle - before) * S::HALF;
+            let half_change = (middle - before).half();
             *both = [middle - half_change, middle + half_change];
         }
-        let moment = Moment { input, fascicle_length: middle, travel, reciprocal, yieldings };
-        let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, &moment);
-        let contractile = self.contractile(&recruited, length, middle, inside, reciprocal, travel);
+        let moment =
+            Moment { input, fascicle_length: midway.length, travel, reciprocal, yieldings };
+        let contractile = self.contractile(&mut state.recruitment, &moment, length, midway.inside);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
-        let extension =
-            Course { middle: state.tendon_extension + stretch * S::HALF, change: stretch };
+        let extension = Course { middle: state.tendon_extension + stretch.half(), change: stretch };
         let end = self.contraction.advance::<R::Coefficients, N>(
             state.fascicle_velocity,
             extension,
@@ -278,7 +277,10 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         state.fascicle_velocity = velocity;
         state.tendon_extension =
             state.tendon_extension + stretch - self.contraction.lengthening(travel);
-        status |= self.confine(state, middle);
+        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        if !(midway.usual && self.domain.is_usual(length, velocity)) {
+            status |= self.confine(state, length, midway.length);
+        }
 
         let tendon_pull = tendon.pull(state.tendon_extension);
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
@@ -290,11 +292,10 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
     }
 
-    /// Keeps length and velocity inside what the state can hold, and says what it had to keep, and
+    /// Keeps `length` and velocity inside what the state can hold, and says what it had to keep, and
     /// whether the filaments' equations held at the tick's `middle` and at its end.
-    fn confine(&self, state: &mut State<S, R, N>, middle: S) -> Status {
+    fn confine(&self, state: &mut State<S, R, N>, length: S, middle: S) -> Status {
         let tendon = &self.contraction.tendon;
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let (length, stopped) = self.domain.fascicle_length.clip(length);
         if stopped {
             state.tendon_extension = tendon.extension(state.path_length, length);
@@ -314,45 +315,51 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status
     }
 
-    /// The contractile element during a tick for which types are `recruited`, whose fascicles are at
-    /// `start` when it starts, at `middle` half way (`inside` where the filaments' equations hold, of
-    /// which the reciprocal is given), and travel by `travel` (all L_ce0).
+    /// Advances recruitment, and puts together the contractile element during the tick of a `moment`,
+    /// whose fascicles are at `start` when it starts and, where the filaments' equations hold,
+    /// `inside` at its middle (all L_ce0).
     fn contractile(
         &self,
-        recruited: &[Recruited<S>; N],
+        recruitment: &mut R::State,
+        moment: &Moment<S, N>,
         start: S,
-        middle: S,
         inside: S,
-        reciprocal: S,
-        travel: S,
     ) -> Contractile<'_, S, N> {
-        let logarithm = inside.ln();
+        let Moment { fascicle_length: middle, travel, .. } = *moment;
+        let distance = self.optimal_length.distance(inside);
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
         let mut gains = [Course::constant(S::ZERO); N];
         let mut compressed = Course::constant(S::ZERO);
-        for ((gain, fiber), unit) in gains.iter_mut().zip(&self.fibers).zip(recruited) {
-            let Course { middle: activation, change: activation_change } = unit.activation;
-            let (length_factor, length_slope) = fiber.force_length.at(logarithm, reciprocal);
-            let active = activation * length_factor;
-            let active_change =
-                activation_change * length_factor + activation * length_slope * travel;
-            gain.middle = unit.weight.middle * active;
-            // A gain that falls fast would pass 0 before the tick's end.
-            let most = gain.middle + gain.middle;
-            let change = unit.weight.change * active + unit.weight.middle * active_change;
-            gain.change = change.max(-most).min(most);
-
-            let weight = &unit.compression_weight;
+        let mut next = gains.iter_mut();
+        self.recruitment.advance(&self.fibers, recruitment, moment, |fiber, recruited| {
+            let Course { middle: activation, change: activation_change } = recruited.activation;
+            let weight = &recruited.compression_weight;
             compressed.middle = compressed.middle + weight.middle * activation;
             compressed.change =
                 compressed.change + weight.change * activation + weight.middle * activation_change;
-        }
+
+            let (length_factor, length_slope) = fiber.force_length.at(&distance);
+            let weight = &recruited.weight;
+            let active = activation * length_factor;
+            let active_change =
+                activation_change * length_factor + activation * length_slope * travel;
+            let middle = weight.middle * active;
+            // A gain that falls fast would pass 0 before the tick's end.
+            let most = middle + middle;
+            let change = weight.change * active + weight.middle * active_change;
+            if let Some(gain) = next.next() {
+                *gain = Course { middle, change: change.max(-most).min(most) };
+            }
+        });
         let passive_slope = parallel_slope + compressed.middle * compression_slope;
         let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {
             gains,
-            curves: self.fibers.each_ref().map(|fiber| fiber.force_velocity.at(inside, travel)),
+            fibers: &self.fibers,
+            curves: core::array::from_fn(|index| {
+                self.fibers[index].force_velocity.at(inside, travel)
+            }),
             passive: Course {
                 middle: passive_at_middle
                     + passive_slope * (start - middle).scaled(&self.tick_rate),

@@ -134,7 +134,7 @@ const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
 /// A path must have at least this range, L_ce0.
 const LEAST_PATH_RANGE: f64 = 0.1;
 /// Fascicle lengths outside of which no type is evaluated, L_ce0.
-const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
+pub(crate) const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 /// Fields that are refused for what follows from them.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Fields that fixed point refuses for what follows from them.

@@ -142,6 +142,7 @@ impl<S: Scalar> Compression<S> {
     }
 
     /// Force (F0, never positive) and its slope (F0 per L_ce0/s and tick) at a length in L_ce0.
+    #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
         let grown = (fascicle_length - self.unit_length).scaled(&self.steepness).exp();
         let force = self.strength - grown;

@@ -72,13 +72,15 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError>;
 
-    /// Advances recruitment, excitation and sag by one tick.
+    /// Advances recruitment, excitation and sag by one tick, and says of each type, in their order,
+    /// how it is `recruited`.
     fn advance(
         &self,
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-    ) -> [Recruited<S>; N];
+        recruited: impl FnMut(&Fiber<S>, Recruited<S>),
+    );
 }
 
 /// What recruitment depends on during a tick.
@@ -112,7 +114,7 @@ pub(crate) fn activated<S: Scalar>(
     let before = yielding * S::of(*sag);
     let after = yielding_after * S::of(sag_after);
     *sag = sag_after;
-    let modulation = (before + after) * S::HALF;
+    let modulation = (before + after).half();
     curve.at(
         frequency.middle * modulation,
         frequency.change * modulation + frequency.middle * (after - before),
@@ -154,14 +156,6 @@ pub struct Recruited<S> {
     pub(crate) weight: Course<S>,
     /// The same for the compression of its thick filaments.
     pub(crate) compression_weight: Course<S>,
-}
-
-impl<S: Scalar> Recruited<S> {
-    pub(crate) const NOT: Self = Self {
-        activation: Course { middle: S::ZERO, change: S::ZERO },
-        weight: Course { middle: S::ZERO, change: S::ZERO },
-        compression_weight: Course { middle: S::ZERO, change: S::ZERO },
-    };
 }
 
 /// What a share may be.

@@ -240,7 +240,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
 fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     let first = x <= S::HALF;
     let rest = if first { x } else { S::ONE - x };
-    let value = half(rest + rest) * S::HALF;
+    let value = half(rest + rest).half();
     if first { value } else { S::ONE - value }
 }
 

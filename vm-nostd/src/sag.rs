@@ -70,10 +70,11 @@ impl<S: Scalar> Sag<S> {
 
 /// The share of a tick (0..1) that a frequency going from `start` to `end` is at or above `level`.
 pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
-    let (above_start, above_end) = (start >= level, end >= level);
-    if above_start == above_end {
-        return if above_end { S::ONE } else { S::ZERO };
+    if start >= level {
+        if end >= level { S::ONE } else { (start - level).ratio(start - end) }
+    } else if end >= level {
+        (end - level).ratio(end - start)
+    } else {
+        S::ZERO
     }
-    let share_before = (level - start).abs().ratio((end - start).abs());
-    if above_end { S::ONE - share_before } else { share_before }
 }

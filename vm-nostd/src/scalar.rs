@@ -93,14 +93,22 @@ pub trait Scalar:
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
 
+    /// Half of it; in fixed point the next lower number of what is not exact.
+    #[must_use]
+    fn half(self) -> Self;
+    /// A polynomial of `self`, from -1 to 1, and its slope: terms by powers, the constant first, whose
+    /// sum in magnitude is 100 at most.
+    fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self);
     /// 1 divided by a positive number; saturated where that is out of range.
     #[must_use]
     fn reciprocal(self) -> Self;
+    /// 1 divided by a positive number, as a factor: what is divided by the same number shares it.
+    fn reciprocal_factor(self) -> Self::Factor;
 
-    /// e to the power of `self`; 0 far below, saturated far above, never an error.
+    /// e to the power of `self`, which is 80 at most; 0 far below, never an error.
     #[must_use]
     fn exp(self) -> Self;
-    /// Natural logarithm of a positive number.
+    /// Natural logarithm of a positive number; of 0, that of about the least there is.
     #[must_use]
     fn ln(self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
@@ -131,8 +139,10 @@ pub trait Scalar:
     ) -> Self::Slow;
     /// The share nearest to a constant, 0..1. Used when a muscle is built.
     fn share(value: f64) -> Self::Share;
-    /// What two lags in a row, each x = `self` time constants long, have done after half of that
-    /// and after all of it.
+    /// What a lag, `self` time constants long, has done: 1 - exp(-`self`).
+    fn done(self) -> Self::Share;
+    /// What two lags in a row, each x = `self` time constants long, 2.5 at most, have done after half of
+    /// that and after all of it.
     fn lags(self) -> [Lags<Self::Share>; 2];
     /// The words of a slow value.
     fn slow_words(slow: Self::Slow) -> impl Iterator<Item = Self::Bits>;

@@ -14,7 +14,7 @@
 use crate::activation::ActivationFrequency;
 use crate::domain::{Domain, Status};
 use crate::error::ParameterError;
-use crate::force_length::ForceLength;
+use crate::force_length::{ForceLength, OptimalLength};
 use crate::muscle::{FesMuscle, Input};
 use crate::params::MuscleParams;
 use crate::passive::{Compression, Parallel};
@@ -27,6 +27,7 @@ use crate::time_step::TimeStep;
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyFes<S: Scalar, const N: usize> {
     domain: Domain<S>,
+    optimal_length: OptimalLength<S>,
     fibers: [SteadyFiber<S>; N],
     parallel: Parallel<S>,
     compression: Compression<S>,
@@ -108,13 +109,14 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let (fascicle, tendon) = (params.fascicle_length, params.tendon_length);
         Ok(Self {
             domain: Domain::new(params),
+            optimal_length: OptimalLength::new(),
             fibers: params.fibers.map(|fiber| {
                 let t = &fiber.fiber_type;
                 let sag = t.sag.map_or([1.0; 2], |sag| [sag.resting_level, sag.firing_level]);
                 SteadyFiber {
                     fraction: S::from_f64(fiber.fraction),
                     activation: ActivationFrequency::new(&t.activation),
-                    force_length: ForceLength::new(&t.force_length),
+                    force_length: ForceLength::new(&t.force_length, params.fascicle_domain()),
                     sag: sag.map(S::from_f64),
                     per_half_force_frequency: S::per_quantity(1.0 / t.half_force_frequency),
                 }
@@ -208,7 +210,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         // Whether either end was ever left.
         let (mut longer, mut shorter) = (false, false);
         for _ in 0..HALVINGS {
-            let extension = (least + most) * S::HALF;
+            let extension = (least + most).half();
             let balance = self.balance(&input, extension);
             if balance.tendon > input.activation * balance.active + balance.passive {
                 (most, longer) = (extension, true);
@@ -216,7 +218,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
                 (least, shorter) = (extension, true);
             }
         }
-        let balance = self.balance(&input, (least + most) * S::HALF);
+        let balance = self.balance(&input, (least + most).half());
         let mut steady = self.steady(input.activation, balance, status);
         steady.status.set(Status::FASCICLE_LENGTH_LIMITED, !(longer && shorter));
         steady
@@ -227,7 +229,8 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let fascicle_length = self.tendon.fascicle_length(input.path_length, extension);
         let (length, _) = self.domain.fascicle_length.clip(fascicle_length);
         let (inside, _) = self.domain.filaments.clip(length);
-        let (reciprocal, logarithm) = (inside.reciprocal(), inside.ln());
+        let reciprocal = inside.reciprocal();
+        let distance = self.optimal_length.distance(inside);
         let (mut active, mut compressed) = (S::ZERO, S::ZERO);
         for fiber in &self.fibers {
             let per = &fiber.per_half_force_frequency;
@@ -236,7 +239,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             let curve = fiber.activation.at(reciprocal);
             let activation = curve.at(frequency * sag, S::ZERO, S::ZERO).middle;
             let share = fiber.fraction * activation;
-            active = active + share * fiber.force_length.at(logarithm, reciprocal).0;
+            active = active + share * fiber.force_length.at(&distance).0;
             compressed = compressed + share;
         }
         let passive = self.parallel.at(length).0 + compressed * self.compression.at(length).0;

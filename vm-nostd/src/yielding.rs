@@ -60,6 +60,7 @@ impl<S: Scalar> Yielding<S> {
 
     /// Y a tick later than it was, the fascicle velocity (L_ce0/s) being given for the middle of that
     /// time.
+    #[inline(always)]
     pub(crate) fn advance(&self, yielding: S::Slow, velocity: S) -> S::Slow {
         if self.depth == S::ZERO {
             return yielding;

@@ -37,7 +37,7 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 /**
  * Bytes of a VmMuscleF32.
  */
-#define VM_MUSCLE_F32_SIZE 512
+#define VM_MUSCLE_F32_SIZE 568
 
 /**
  * Words of its saved state.
@@ -47,7 +47,7 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 /**
  * Bytes of a VmMuscleFixed.
  */
-#define VM_MUSCLE_FIXED_SIZE 632
+#define VM_MUSCLE_FIXED_SIZE 680
 
 /**
  * Words of its saved state.

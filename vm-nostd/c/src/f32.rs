@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Input, TimeStep};
 
 /// Bytes of a VmMuscleF32.
-pub const VM_MUSCLE_F32_SIZE: usize = 512;
+pub const VM_MUSCLE_F32_SIZE: usize = 568;
 /// Words of its saved state.
 pub const VM_F32_STATE_WORDS: usize = 14;
 

@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Fixed, Input, Scalar, TimeStep};
 
 /// Bytes of a VmMuscleFixed.
-pub const VM_MUSCLE_FIXED_SIZE: usize = 632;
+pub const VM_MUSCLE_FIXED_SIZE: usize = 680;
 /// Words of its saved state.
 pub const VM_FIXED_STATE_WORDS: usize = 23;
 

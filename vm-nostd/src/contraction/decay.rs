@@ -49,7 +49,7 @@ impl<S: Scalar> Decay<S> {
         let share = s * (self.two_thirds + s * (self.five_thirds - s * self.four_thirds));
         Left {
             end: gained - share * difference,
-            mean: s * share * (S::HALF * (S::ONE - s)) * difference,
+            mean: s * share * (S::ONE - s).half() * difference,
         }
     }
 }

@@ -121,13 +121,12 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
     ) -> Option<Course<S>> {
         let before = S::of(*state);
         let inactive = (S::ONE - activation).max(coefficients.least_inactive);
-        let quarter = moment.travel * S::HALF * S::HALF;
+        let quarter = moment.travel.half().half();
         // The way to a length, and the share 1 - 1/√grown of it that is gone, as that of a lag.
         let step = |length: S, from: S| {
             let distance = coefficients.range.clip(length).0 - from;
             let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);
-            let [half, _] = grown.ln().lags();
-            (distance, half.done)
+            (distance, grown.ln().half().done())
         };
         let first = step(moment.fascicle_length - quarter, before);
         let middle = S::of(S::moved(*state, first.0, first.1));

@@ -99,7 +99,8 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-    ) -> [Recruited<S>; N] {
+        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
+    ) {
         let activation = moment.input.activation;
         let start = state.effective_activation;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
@@ -116,14 +117,13 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 count = count + S::ONE;
             }
         }
-        // At its own threshold a single type carries everything, whatever the excess.
-        let of_sum = |value: S| if sum > S::ZERO { value.ratio(sum) } else { S::ZERO };
-        let relative_change = of_sum(change);
+        // At the threshold of the first type there is nothing to share yet.
+        let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
+        let relative_change = change.scaled(&per_sum);
 
-        let mut recruited = [Recruited::NOT; N];
         let kept = state.fibers.iter_mut().zip(&mut state.activations);
-        for ((((result, unit), (kept, foreseen)), fiber), yieldings) in
-            recruited.iter_mut().zip(&self.units).zip(kept).zip(fibers).zip(moment.yieldings)
+        for (((unit, (kept, foreseen)), fiber), yieldings) in
+            self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
         {
             let drive = unit.frequency(activation);
             let before = kept.effective_frequency;
@@ -132,7 +132,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 drive,
                 drive,
                 *foreseen,
-                moment.fascicle_length,
+                (moment.fascicle_length, moment.reciprocal),
             );
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
@@ -141,7 +141,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 fiber,
                 &fiber.activation.at(moment.reciprocal),
                 &mut kept.sag,
-                yieldings,
+                *yieldings,
                 Course { middle: excited.effective_at_middle, change: end - start },
                 share_above(start, end, self.firing),
                 moment.travel,
@@ -151,14 +151,13 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
             let excess = middle - unit.threshold;
             let weight = if excess >= S::ZERO {
-                let value = middle * of_sum(excess);
+                let value = middle * excess.scaled(&per_sum);
                 let slope = middle + excess - count * value;
                 Course { middle: value, change: slope * relative_change }
             } else {
                 Course::constant(S::ZERO)
             };
-            *result = Recruited { activation, weight, compression_weight: weight };
+            recruited(fiber, Recruited { activation, weight, compression_weight: weight });
         }
-        recruited
     }
 }

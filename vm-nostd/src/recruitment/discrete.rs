@@ -149,17 +149,15 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-    ) -> [Recruited<S>; N] {
+        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
+    ) {
         let curves = fibers.each_ref().map(|fiber| fiber.activation.at(moment.reciprocal));
-        let whole = Course::constant(S::ONE);
-        let none = Course::constant(S::ZERO);
-        let mut recruited =
-            [Recruited { activation: none, weight: whole, compression_weight: whole }; N];
+        let mut activations = [Course::constant(S::ZERO); N];
         for (kept, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
             let of_type = fibers.get(unit.fiber).zip(curves.get(unit.fiber));
             let yieldings = moment.yieldings.get(unit.fiber);
-            let Some((((fiber, curve), yieldings), result)) =
-                of_type.zip(yieldings).zip(recruited.get_mut(unit.fiber))
+            let Some((((fiber, curve), yieldings), sum)) =
+                of_type.zip(yieldings).zip(activations.get_mut(unit.fiber))
             else {
                 continue;
             };
@@ -170,7 +168,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 drive,
                 drive,
                 kept.activation,
-                moment.fascicle_length,
+                (moment.fascicle_length, moment.reciprocal),
             );
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
@@ -191,11 +189,13 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 length_change,
             );
             kept.activation = activation.next_share();
-            let sum = &mut result.activation;
             sum.middle = sum.middle + unit.share * activation.middle;
             sum.change = sum.change + unit.share * activation.change;
         }
-        recruited
+        let whole = Course::constant(S::ONE);
+        for (fiber, activation) in fibers.iter().zip(activations) {
+            recruited(fiber, Recruited { activation, weight: whole, compression_weight: whole });
+        }
     }
 }
 

@@ -88,13 +88,13 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-    ) -> [Recruited<S>; N] {
+        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
+    ) {
         let input = &moment.input;
         let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
-        let mut recruited = [Recruited::NOT; N];
         let kept = state.fibers.iter_mut().zip(&mut state.activations);
-        for ((((result, unit), (kept, foreseen)), fiber), yieldings) in
-            recruited.iter_mut().zip(&self.units).zip(kept).zip(fibers).zip(moment.yieldings)
+        for (((unit, (kept, foreseen)), fiber), yieldings) in
+            self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
         {
             let frequency =
                 S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency);
@@ -104,7 +104,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 input.activation,
                 frequency,
                 slowing,
-                moment.fascicle_length,
+                (moment.fascicle_length, moment.reciprocal),
             );
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
@@ -112,21 +112,18 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 fiber,
                 &fiber.activation.at(moment.reciprocal),
                 &mut kept.sag,
-                yieldings,
+                *yieldings,
                 Course::constant(frequency),
                 if frequency > self.firing { S::ONE } else { S::ZERO },
                 moment.travel,
             );
             *foreseen = activation.next_share();
-            *result = Recruited {
-                activation,
-                weight: Course {
-                    middle: unit.fraction * excited.effective_at_middle,
-                    change: unit.fraction * (S::of(excited.effective) - S::of(before)),
-                },
-                compression_weight: Course::constant(unit.fraction),
+            let weight = Course {
+                middle: unit.fraction * excited.effective_at_middle,
+                change: unit.fraction * (S::of(excited.effective) - S::of(before)),
             };
+            let compression_weight = Course::constant(unit.fraction);
+            recruited(fiber, Recruited { activation, weight, compression_weight });
         }
-        recruited
     }
 }

@@ -10,13 +10,12 @@ use crate::scalar::Scalar;
 pub(super) struct Firing<S: Scalar> {
     /// Uth.
     pub(super) threshold: S,
-    minimum_frequency: S,
     maximum_frequency: S,
     /// (fmax - fmin)/(1 - Uth).
     slope: S::Factor,
 }
 
-summed!([S: Scalar] Firing<S> { threshold, minimum_frequency, maximum_frequency, slope });
+summed!([S: Scalar] Firing<S> { threshold, maximum_frequency, slope });
 
 /// 1 - Uth is not taken as less: what is recruited at U = 1 only fires as all do then.
 const LEAST_RANGE: f64 = 1e-6;
@@ -27,7 +26,6 @@ impl<S: Scalar> Firing<S> {
         let range = Scalar::max(1.0 - threshold, LEAST_RANGE);
         Self {
             threshold: S::from_f64(threshold),
-            minimum_frequency: S::from_f64(minimum_frequency),
             maximum_frequency: S::from_f64(maximum_frequency),
             slope: S::factor((maximum_frequency - minimum_frequency) / range),
         }
@@ -39,7 +37,6 @@ impl<S: Scalar> Firing<S> {
         if activation < self.threshold {
             return S::ZERO;
         }
-        let below = (S::ONE - activation).scaled(&self.slope);
-        (self.maximum_frequency - below).max(self.minimum_frequency)
+        self.maximum_frequency - (S::ONE - activation).scaled(&self.slope)
     }
 }

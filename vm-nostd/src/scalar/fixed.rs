@@ -7,6 +7,7 @@ mod factor;
 mod mantissa;
 mod number;
 mod pieces;
+mod polynomial;
 mod quotient;
 mod root;
 
@@ -96,7 +97,7 @@ impl Scalar for Fixed {
         Self::from_bits(factor.times(self.to_bits()))
     }
     fn ratio(self, divisor: Self) -> Self {
-        Self::from_bits(quotient::ratio(self.to_bits(), divisor.to_bits()))
+        self.scaled(&divisor.reciprocal_factor())
     }
 
     #[inline(always)]
@@ -106,8 +107,22 @@ impl Scalar for Fixed {
         Self::from_bits((self.to_bits() ^ sign).saturating_sub(sign))
     }
 
+    #[inline(always)]
+    fn half(self) -> Self {
+        Self::from_bits(self.to_bits() >> 1)
+    }
+    #[inline(always)]
+    fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self) {
+        let (value, slope) =
+            polynomial::at(self.to_bits(), terms.iter().map(|term| term.to_bits()));
+        (Self::from_bits(value), Self::from_bits(slope))
+    }
+
     fn reciprocal(self) -> Self {
         Self::from_bits(quotient::reciprocal(self.to_bits()))
+    }
+    fn reciprocal_factor(self) -> Factor {
+        quotient::reciprocal_factor(self.to_bits())
     }
 
     fn exp(self) -> Self {
@@ -129,6 +144,7 @@ impl Scalar for Fixed {
     fn of_one_and(self, factor: Self) -> Self {
         Self::from_bits(quotient::of_one_and(factor.to_bits(), self.to_bits()))
     }
+    #[inline(always)]
     fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self) {
         let [residual, line, steepness, half_curvature] =
             [self, line, steepness, half_curvature].map(Self::to_bits);
@@ -140,11 +156,12 @@ impl Scalar for Fixed {
         i64::from(self.to_bits()) << SLOW_SHIFT
     }
     fn of(slow: i64) -> Self {
-        // Values are levels and frequencies far below the greatest: half a unit more fits.
-        Self::from_bits((slow.saturating_add(1 << (SLOW_SHIFT - 1)) >> SLOW_SHIFT) as i32)
+        let (whole, half) = ((slow >> SLOW_SHIFT) as i32, (slow as u32 >> (SLOW_SHIFT - 1)) as i32);
+        Self::from_bits(whole.saturating_add(half))
     }
     fn moved(slow: i64, difference: Self, share: u32) -> i64 {
-        slow.saturating_add(i64::from(difference.to_bits()) * i64::from(share))
+        // Where it comes to is between numbers that fit, whatever a sum on the way is.
+        slow.wrapping_add(i64::from(difference.to_bits()) * i64::from(share))
     }
     fn moved_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
         Self::moved(Self::moved(slow, first.0, first.1), second.0, second.1)
@@ -152,6 +169,10 @@ impl Scalar for Fixed {
     fn share(value: f64) -> u32 {
         (value * 4_294_967_296.0 + 0.5) as u32
     }
+    fn done(self) -> u32 {
+        u32::MAX - exponential::decay(self.to_bits())
+    }
+    #[inline(always)]
     fn lags(self) -> [Lags<u32>; 2] {
         let x = self.to_bits().max(0);
         let left_at_half = exponential::decay(x >> 1);

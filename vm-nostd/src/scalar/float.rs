@@ -60,7 +60,26 @@ macro_rules! float {
                 self / divisor
             }
 
+            fn half(self) -> Self {
+                0.5 * self
+            }
+            #[inline(always)]
+            fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self) {
+                let [lower @ .., before, last] = terms.as_slice() else {
+                    return (terms.iter().sum(), 0.0);
+                };
+                let (mut value, mut slope) = (before + last * self, *last);
+                for term in lower.iter().rev() {
+                    slope = value + slope * self;
+                    value = term + value * self;
+                }
+                (value, slope)
+            }
+
             fn reciprocal(self) -> Self {
+                1.0 / self
+            }
+            fn reciprocal_factor(self) -> Self {
                 1.0 / self
             }
 
@@ -126,10 +145,13 @@ macro_rules! float {
             fn share(value: f64) -> Self {
                 value as Self
             }
+            fn done(self) -> Self {
+                $kernels::one_minus_exp(self)
+            }
             #[inline(always)]
             fn lags(self) -> [Lags<Self>; 2] {
                 let half = self * 0.5;
-                let done_by_half = $kernels::one_minus_exp(half);
+                let done_by_half = $kernels::soon_done(half);
                 let done = done_by_half * (2.0 - done_by_half);
                 [
                     Lags { done: done_by_half, delayed: half * (1.0 - done_by_half) },

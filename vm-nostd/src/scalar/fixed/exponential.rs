@@ -69,6 +69,7 @@ pub(super) fn exp(x: i32) -> i32 {
 /// # Scaling and overflow
 /// The exponent of a number below 1 is negative: the shift of the Q1.31 mantissa is 0 or to the
 /// right. For x = 0 it would be 2^32 and is a unit less.
+#[inline(always)]
 pub(super) fn decay(x: i32) -> u32 {
     let (mantissa, exponent) = parts(-x.max(0));
     match -1 - exponent {

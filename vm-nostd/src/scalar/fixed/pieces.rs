@@ -17,16 +17,17 @@ const fn node(value: f64, slope: f64) -> Node {
 }
 
 /// The cubic through a node and the next, with their slopes, at a `place` counted from the first
-/// node in Q8.24; value and slope by pieces, in Q2.30. None beyond the last node.
+/// node in Q8.24; value and slope by pieces, in Q2.30. Beyond the last node, what they are somewhere in
+/// the last piece, which is to be flat.
 ///
 /// # Scaling and overflow
 /// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
 /// differences of values, and all coefficients below 2^29. The place within a piece is a share
 /// in Q0.31, the product with it Q3.29 before it is doubled.
 #[inline(always)]
-fn between(nodes: &[Node], place: u32) -> Option<(i32, i32)> {
-    let index = (place >> PLACE_BITS) as usize;
-    let [(start, first), (end, last)] = *nodes.get(index..)?.first_chunk()?;
+fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) {
+    let index = ((place >> PLACE_BITS) as usize).min(NODES - 2);
+    let ((start, first), (end, last)) = (nodes[index], nodes[index + 1]);
     let share = ((place << (32 - PLACE_BITS)) >> 1) as i32;
     let times = |coefficient: i32| high(share, coefficient) << 1;
     let rise = end - start;
@@ -35,7 +36,7 @@ fn between(nodes: &[Node], place: u32) -> Option<(i32, i32)> {
     let bent = times(cubic);
     let value = start + times(first + times(square + bent));
     let slope = first + times(2 * square + 3 * bent);
-    Some((value, slope))
+    (value, slope)
 }
 
 /// A value, and a slope by pieces, in Q2.30 as a value and a slope by units in Q8.24; rounded.
@@ -64,7 +65,7 @@ static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
 /// ln(e^x + 1), saturated, within 3 units, and the logistic function of x, within 3e-6.
 #[inline(always)]
 pub(super) fn softplus(x: i32) -> (i32, i32) {
-    let (tail, slope) = between(&SOFTPLUS, x.unsigned_abs()).map_or((0, 0), in_units);
+    let (tail, slope) = in_units(between(&SOFTPLUS, x.unsigned_abs()));
     if x > 0 { (x.saturating_add(tail), super::number::ONE + slope) } else { (tail, -slope) }
 }
 
@@ -90,11 +91,8 @@ static WEIBULL: [Node; WEIBULL_NODES] = {
 /// Below the first node and beyond the last it is 0 and 1 to 3e-8. The place from the first
 /// node on is x and 18: saturated, it is beyond the last node.
 pub(super) fn weibull(x: i32) -> (i32, i32) {
-    let place = x.saturating_sub(WEIBULL_LEAST << 24);
-    if place < 0 {
-        return (0, 0);
-    }
-    between(&WEIBULL, place as u32).map_or((super::number::ONE, 0), in_units)
+    let place = x.saturating_sub(WEIBULL_LEAST << 24).max(0);
+    in_units(between(&WEIBULL, place as u32))
 }
 
 /// What the two tables take.

@@ -2,44 +2,46 @@
 
 use super::factor::Factor;
 use super::mantissa;
-use super::number::exact;
+use super::number::{FRACTION, exact};
 
-/// `numerator/denominator` in Q8.24, saturated, for numbers in one format and a positive
-/// denominator; within 2^-28 of its value and 1 unit. A denominator below a unit counts as one.
+/// What turns numerators into quotients by a positive denominator, in Q8.24, for numbers in one
+/// format; quotients are within 2^-28 of their value and 1 unit. A denominator below a unit counts as
+/// one.
 ///
 /// # Scaling and overflow
 /// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in Q1.31; its
 /// reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the numerator has to
 /// be multiplied with. That shift is 7 to 37 bits.
-pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
+pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     let denominator = denominator.max(1) as u32;
     let zeros = denominator.leading_zeros();
     let reciprocal = mantissa::reciprocal(denominator << zeros).min(i32::MAX as u32);
-    Factor::scaled_down(reciprocal as i32, 38 - zeros).times(numerator)
+    Factor::scaled_down(reciprocal as i32, 38 - zeros)
+}
+
+/// `numerator/denominator`, as there.
+pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
+    reciprocal_factor(denominator).times(numerator)
 }
 
 /// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and below it
-/// is that of one unit.
+/// is the greatest number.
 ///
 /// # Scaling and overflow
-/// x, shifted left by z bits until its first bit is set, is a mantissa; its reciprocal in Q1.31, shifted
-/// right by 14 - z bits, is Q8.24. At z = 14, x is 2^-7 at least and 1/x 2^7 at most; beyond, it
-/// saturates.
+/// x, 2^-7 at least, where 1/x is 2^7 and saturates, and shifted left by z bits, up to 14, until its first
+/// bit is set, is a mantissa; its reciprocal in Q1.31, shifted right by 14 - z bits, is Q8.24.
 pub(super) fn reciprocal(x: i32) -> i32 {
-    let x = x.max(1) as u32;
+    const LEAST: i32 = 1 << (FRACTION - 7);
+    let x = x.max(LEAST) as u32;
     let zeros = x.leading_zeros();
-    scaled_back(mantissa::reciprocal(x << zeros), 14 - zeros as i32)
+    scaled_back(mantissa::reciprocal(x << zeros), 14 - zeros)
 }
 
-/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right, rounded; saturated where the shift
-/// is to the left.
+/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right by up to 22 bits, rounded; 2^31, not
+/// shifted, becomes a unit less.
 #[inline(always)]
-fn scaled_back(reciprocal: u32, shift: i32) -> i32 {
-    match shift {
-        ..0 => i32::MAX,
-        0 => reciprocal.min(i32::MAX as u32) as i32,
-        _ => (((reciprocal >> (shift - 1)) + 1) >> 1) as i32,
-    }
+fn scaled_back(reciprocal: u32, shift: u32) -> i32 {
+    ((reciprocal + (1 << shift >> 1)) >> shift).min(i32::MAX as u32) as i32
 }
 
 /// Two words as one, shifted left by at most 31 bits.
@@ -61,7 +63,7 @@ pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
     let sum = ((high + ONE).max(ONE >> 7), low);
     let zeros = sum.0.leading_zeros();
     let reciprocal = mantissa::reciprocal(word(sum, zeros) as u32);
-    scaled_back(reciprocal, 22 - zeros as i32)
+    scaled_back(reciprocal, 22 - zeros)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ pub(super) fn exp(x: f64) -> f64 {
 }
 
 pub(super) fn ln(x: f64) -> f64 {
-    libm::log(x)
+    libm::log(x.max(f64::MIN_POSITIVE))
 }
 
 /// ln(e^x + 1) and its slope.
@@ -39,3 +39,5 @@ pub(crate) fn tangent(x: f64) -> f64 {
 pub(crate) fn one_minus_exp(x: f64) -> f64 {
     -libm::expm1(-x)
 }
+
+pub(super) use one_minus_exp as soon_done;
