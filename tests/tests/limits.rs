@@ -264,6 +264,40 @@ fn flags_of_the_state_are_raised_by_what_they_name() {
 }
 
 #[test]
+fn fascicles_are_no_faster_than_the_state_can_hold_whatever_their_filaments_could() {
+    let mut params = MUSCLE;
+    for fiber in &mut params.fibers {
+        fiber.fiber_type.force_velocity.maximum_velocity = -100.0;
+        fiber.fiber_type.force_velocity.shortening = [0.0, 0.0];
+    }
+    params.elements.parallel.viscosity = 1e-3;
+    let muscle = ContinuousMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("valid");
+    let (shortest, longest) = muscle.path_length_range();
+    let mut held = 0;
+    for stretched in 0..60 {
+        // Fully active, and the path, stretched for some ticks, gone at once.
+        let mut state = muscle.rest(0.17).expect("in range");
+        for tick in 0..400 {
+            let end = 300 + stretched;
+            let path_length =
+                [0.17, longest, shortest][usize::from(tick >= 300) + usize::from(tick >= end)];
+            let output = muscle.step(
+                &mut state,
+                Input { activation: 1.0, path_length, stimulation_frequency: 0.0 },
+            );
+            let velocity = output.fascicle_velocity;
+            assert!(velocity.abs() <= 60.0, "tick {tick}: {output:?}");
+            held += u32::from(velocity == -60.0);
+            assert!(
+                velocity.abs() < 60.0 || output.status.contains(Status::FASCICLE_VELOCITY_LIMITED)
+            );
+            assert_eq!(muscle.restore(state.words()), Ok(state), "tick {tick}");
+        }
+    }
+    assert!(held > 0, "the limit was never reached");
+}
+
+#[test]
 fn fascicles_beyond_the_domain_are_flagged_and_their_passive_force_still_holds() {
     // Long enough on its longest path for n_f of the slow type to fall below 0.2.
     let params = Params { max_path_length: 0.218, ..MUSCLE };

@@ -74,7 +74,7 @@ pub(crate) struct Advanced<S> {
 /// 0 at least.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contractile<'a, S: Scalar, const N: usize> {
-    /// What multiplies FV of each type; never negative.
+    /// What multiplies FV of each type; never negative, but by rounding.
     pub(crate) gains: [Course<S>; N],
     /// FV of each type, and its curve during the tick.
     pub(crate) fibers: &'a [Fiber<S>; N],

@@ -90,7 +90,7 @@ pub(crate) struct Domain<S: Scalar> {
     pub(crate) path_length: Range<S::PathLength>,
     /// Where the equations of the filaments hold, L_ce0.
     pub(crate) filaments: Range<S>,
-    /// The slowest V_max of the types, L_ce0/s: FV of all types holds above.
+    /// The slowest V_max of the types, or the greatest speed there is, L_ce0/s: FV of all types holds above.
     pub(crate) shortening_velocity: S,
     /// What the state can hold, L_ce0: from the shortest at which the equations hold to where
     /// the longest path would leave no tendon.
@@ -123,7 +123,10 @@ impl<S: Scalar> Domain<S> {
             stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::quantity),
             path_length: Range::new(params.path_domain(), S::path_length),
             filaments: Range::new(filaments, S::from_f64),
-            shortening_velocity: S::from_f64(params.shortening_velocity()),
+            shortening_velocity: S::from_f64(Scalar::max(
+                params.shortening_velocity(),
+                -MAXIMUM_SPEED,
+            )),
             fascicle_length: Range::new((filaments.0, longest), S::from_f64),
             fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
             usual: Range::new((filaments.0, Scalar::min(filaments.1, longest)), S::from_f64),

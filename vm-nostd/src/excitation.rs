@@ -88,9 +88,10 @@ impl<S: Scalar> Excitation<S> {
 
     /// One tick from (`intermediate`, `effective`) towards `drive`.
     ///
-    /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like the fascicle's `length`
-    /// and its reciprocal, at the tick's middle. In the variable x = ∫dt/Tf the two lags are linear and
-    /// solved exactly; where f_int and f_eff cross within the tick, x is put together from both sides.
+    /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like the fascicle's `length`, at
+    /// the tick's middle; `reciprocal` is that of the nearest length where the filaments' equations hold. In
+    /// the variable x = ∫dt/Tf the two lags are linear and solved exactly; where f_int and f_eff cross
+    /// within the tick, x is put together from both sides.
     #[inline(always)]
     pub(crate) fn advance(
         &self,
@@ -120,7 +121,7 @@ impl<S: Scalar> Excitation<S> {
         let effective_after = |lags: Lags<S::Share>| {
             S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done))
         };
-        // By rounding they may come out below 0.
+        // What is kept is not below 0, not even by rounding.
         let end = effective_after(whole);
         Excited {
             intermediate: S::moved(intermediate, -excess, whole.done),

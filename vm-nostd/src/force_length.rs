@@ -32,7 +32,7 @@ impl ForceLengthParams {
     }
 }
 
-/// Terms of the polynomial: it leaves FL within 2e-6 for the published types, and within 1e-4 for any.
+/// Terms of the polynomial: it leaves FL within 2e-6 for published types, and within 1.2e-4 for any.
 const TERMS: usize = 8;
 /// Where it is fitted, from -1 to 1: Chebyshev's nodes, cos((2 k + 1) π/16).
 const NODES: [f64; TERMS] = [
@@ -84,9 +84,9 @@ impl ForceLengthParams {
     }
 }
 
-/// Nearer to their optimal length (L_ce0) fascicles are taken to be as far as this from it: FL is 1
-/// there, and the slope of |L - 1|^rho has a cusp.
-const NEAREST: f64 = 1.0 / 65_536.0;
+/// Nearer to their optimal length (L_ce0) fascicles are taken to be as far as this from it, where FL is 1
+/// to 1e-4 at most, and to 1e-9 for published types: the slope of |L - 1|^rho has a cusp.
+const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.
 #[derive(Clone, Copy, Debug)]
@@ -180,28 +180,32 @@ pub(crate) mod tests {
                 let of_fixed = fixed(Fixed::from_f64(length));
                 for (value, slope) in [of_f32, (of_fixed.0.to_f64(), of_fixed.1.to_f64())] {
                     assert!((value - 1.0).abs() < 1e-6, "L {length}: {value}");
-                    assert!(slope.abs() < 0.03, "L {length}: slope {slope}");
+                    assert!(slope.abs() < 0.1, "L {length}: slope {slope}");
                 }
             }
         }
     }
 
     #[test]
-    fn of_any_type_it_is_within_1e4th() {
-        for skewness in [0.1, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0] {
-            for width in [0.1, 0.2, 0.5, 1.0, 3.0, 10.0] {
+    fn of_any_type_it_is_within_12e5th() {
+        for skewness in [0.1, 0.12, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0] {
+            for width in [0.1, 0.104, 0.2, 0.5, 1.0, 3.0, 10.0] {
                 for roundness in [1.0, 1.5, 2.0, 3.0, 10.0] {
                     let p = ForceLengthParams { width, skewness, roundness };
                     let (f32, f64) = (force_length::<f32>(&p), force_length::<f64>(&p));
                     for step in 0..=700 {
-                        // No nearer to 1 than its cusp is followed.
-                        let length = 0.4003 + 0.002 * f64::from(step);
+                        let length = f64::from((0.4 + 0.002 * f64::from(step)) as f32);
                         let exact = papers_force_length(&p, length);
                         for found in [f64(length).0, f64::from(f32(length as f32).0)] {
                             let error = (found - exact).abs();
-                            assert!(error < 1e-4, "{p:?}, L {length}: {found} {exact}");
+                            assert!(error < 1.2e-4, "{p:?}, L {length}: {found} {exact}");
                         }
                     }
+                    // What sums of terms, and of the slope's, may be in fixed point.
+                    let terms = p.smooth(FASCICLE_DOMAIN).map(f64::abs);
+                    let steep =
+                        terms.iter().zip(0_u8..).map(|(term, power)| term * f64::from(power));
+                    assert!(terms.iter().sum::<f64>() < 100.0 && steep.sum::<f64>() < 100.0);
                 }
             }
         }

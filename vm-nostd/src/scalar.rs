@@ -60,7 +60,7 @@ pub trait Scalar:
     const ONE: Self;
     /// 1/2.
     const HALF: Self;
-    /// The least positive value whose logarithm is taken.
+    /// A value that is positive, and as small as makes no difference to any equation.
     const LEAST: Self;
     /// No larger coefficient can be held.
     const LARGEST_COEFFICIENT: f64;
@@ -96,8 +96,8 @@ pub trait Scalar:
     /// Half of it; in fixed point the next lower number of what is not exact.
     #[must_use]
     fn half(self) -> Self;
-    /// A polynomial of `self`, from -1 to 1, and its slope: terms by powers, the constant first, whose
-    /// sum in magnitude is 100 at most.
+    /// A polynomial of `self`, from -1 to 1, and its slope: terms by powers, the constant first. Neither the
+    /// sum of their magnitudes, nor that of the slope's, is more than 100.
     fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self);
     /// 1 divided by a positive number; saturated where that is out of range.
     #[must_use]

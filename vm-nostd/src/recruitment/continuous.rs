@@ -117,7 +117,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 count = count + S::ONE;
             }
         }
-        // At the threshold of the first type there is nothing to share yet.
+        // Where there is nothing to share, any divisor will do.
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
         let relative_change = change.scaled(&per_sum);
 

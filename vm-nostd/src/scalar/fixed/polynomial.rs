@@ -6,9 +6,8 @@ use super::number::high;
 /// Q8.24 between -1 and 1; within two units for each term.
 ///
 /// # Scaling and overflow
-/// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. The terms' magnitudes
-/// add to 100 at most, and so do the value's at every power; the slope's are below 128 where those of all
-/// powers, times the power, are.
+/// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of terms, and
+/// of the slope's terms, add to 100 at most: so does what is summed up at any step.
 #[inline(always)]
 pub(super) fn at(x: i32, terms: impl DoubleEndedIterator<Item = i32>) -> (i32, i32) {
     let share = x << 7;
