@@ -101,8 +101,8 @@ pub(crate) use summed;
 mod tests {
     use crate::checksum::Checksum;
     use crate::muscle::{ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle};
-    use crate::params::{FiberParams, MuscleParams};
-    use crate::presets::paper_table_1::{ELEMENTS, FAST, SLOW};
+    use crate::params::MuscleParams;
+    use crate::presets::PAPER_MUSCLE;
     use crate::recruitment::{MotorUnits, UnitSizes};
     use crate::scalar::Scalar;
     use crate::scalar::fixed::Fixed;
@@ -128,18 +128,7 @@ mod tests {
 
     /// Every coefficient that depends on a parameter is in the sum: change any parameter a little.
     fn parameters_are_in_the_sum<S: Scalar>() {
-        let muscle = MuscleParams {
-            mass: 97.5e-3,
-            fascicle_length: 0.11,
-            tendon_length: 0.02,
-            max_path_length: 0.184,
-            recruitment_saturation: 0.8,
-            elements: ELEMENTS,
-            fibers: [
-                FiberParams { fraction: 0.6, fiber_type: SLOW },
-                FiberParams { fraction: 0.4, fiber_type: FAST },
-            ],
-        };
+        let muscle = PAPER_MUSCLE;
         let step = TimeStep::MILLISECOND;
         let sums = |params: &MuscleParams<2>, step| {
             let units =

@@ -76,8 +76,9 @@ pub(crate) struct Advanced<S> {
 pub(crate) struct Contractile<'a, S: Scalar, const N: usize> {
     /// What multiplies FV of each type; never negative, but by rounding.
     pub(crate) gains: [Course<S>; N],
-    /// FV of each type, and its curve during the tick.
+    /// The types, of which FV is asked.
     pub(crate) fibers: &'a [Fiber<S>; N],
+    /// What FV of each depends on during the tick.
     pub(crate) curves: [VelocityCurve<S>; N],
     /// Passive force at the length the tick starts with and V = 0.
     pub(crate) passive: Course<S>,

@@ -8,9 +8,9 @@ use crate::force_length::tests::{force_length, papers_force_length};
 use crate::force_velocity::ForceVelocity;
 use crate::lag::Lag;
 use crate::muscle::Input;
-use crate::params::{FiberParams, FiberType, MuscleParams};
+use crate::params::FiberType;
 use crate::passive::{Compression, Parallel};
-use crate::presets::{feline_vm4, human_vm4, paper_table_1};
+use crate::presets::{PAPER_MUSCLE, feline_vm4, human_vm4, paper_table_1};
 use crate::sag::share_above;
 use crate::scalar::Scalar;
 use crate::scalar::fixed::Fixed;
@@ -355,18 +355,7 @@ fn the_readme_has_the_bounds_of_the_relations_and_their_sum() {
 #[test]
 fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
     fn held<S: Scalar>(activation: f64, path: f64) -> f64 {
-        let fibers = [(0.6, paper_table_1::SLOW), (0.4, paper_table_1::FAST)]
-            .map(|(fraction, fiber_type)| FiberParams { fraction, fiber_type });
-        let params = MuscleParams {
-            mass: 97.5e-3,
-            fascicle_length: 0.11,
-            tendon_length: 0.02,
-            max_path_length: 0.184,
-            recruitment_saturation: 0.8,
-            elements: paper_table_1::ELEMENTS,
-            fibers,
-        };
-        let muscle = ContinuousMuscle::<S, 2>::build(&params, TimeStep::MILLISECOND).unwrap();
+        let muscle = ContinuousMuscle::<S, 2>::build(&PAPER_MUSCLE, TimeStep::MILLISECOND).unwrap();
         let path = S::path_length(path);
         let mut state = muscle.rest(path).unwrap();
         let input = Input {

@@ -12,6 +12,21 @@ use crate::sag::SagParams;
 use crate::tendon::TendonParams;
 use crate::yielding::YieldParams;
 
+/// The paper's muscle, for tests.
+#[cfg(test)]
+pub(crate) const PAPER_MUSCLE: crate::MuscleParams<2> = crate::MuscleParams {
+    mass: 97.5e-3,
+    fascicle_length: 0.11,
+    tendon_length: 0.02,
+    max_path_length: 0.184,
+    recruitment_saturation: 0.8,
+    elements: paper_table_1::ELEMENTS,
+    fibers: [
+        crate::FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
+        crate::FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
+    ],
+};
+
 /// Milliseconds in seconds.
 const fn ms(milliseconds: f64) -> f64 {
     milliseconds * 1e-3

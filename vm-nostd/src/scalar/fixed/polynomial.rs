@@ -3,7 +3,8 @@
 use super::number::high;
 
 /// The polynomial with terms by powers of x, the constant first, and its slope, in Q8.24, for x in
-/// Q8.24 between -1 and 1; within two units for each term.
+/// Q8.24 between -1 and 1. Each product is cut by less than two units: of eight terms, the value is
+/// within 16 units, and the slope, in which every cut value is multiplied again, within 72.
 ///
 /// # Scaling and overflow
 /// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of terms, and
@@ -26,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn polynomials_and_their_slopes_are_within_two_units_for_each_term() {
+    fn polynomials_of_eight_terms_are_within_16_units_and_their_slopes_within_72() {
         let mut terms = of_any_length().map(|bits| bits >> 4);
         for _ in 0..2_000 {
             let terms: [i32; 8] = core::array::from_fn(|_| terms.next().expect("endless"));
