@@ -294,7 +294,7 @@ fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
         assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
         // In the report that follows it. How many ticks that takes depends on how fast this host sends it.
         assert!(after.ticks > before.ticks);
-        assert_eq!((after.late, after.frames.broken), (0, 0));
+        assert_eq!((after.late, after.frames.broken), (0, 0), "{fault:?}: {after:?}");
         // There were pulses; now there is no way for a current, and none is opened again.
         let closed = pins.closed;
         pins = machine.pins();
