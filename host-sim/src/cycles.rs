@@ -25,5 +25,5 @@ pub use estimator::Cost;
 pub use instruction::Instruction;
 pub use profile::{MACHINE, Profile, ProfileError, of_case, of_image};
 pub use reach::{Reached, reachable};
-pub use report::{CLOCKS, MARGIN, ReportError, Row, Spread, report};
+pub use report::{CLOCKS, MARGIN, ReportError, Row, Share, Spread, report};
 pub use trace::Tracer;

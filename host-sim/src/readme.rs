@@ -1,6 +1,6 @@
 //! The measured tables in the READMEs: made here, and compared with what is written there.
 
-use crate::cycles;
+use crate::cycles::{self, Share};
 use crate::scenario::paper_muscle;
 use crate::trace::{TraceError, write_atomically};
 use crate::verify::{Report, Row};
@@ -137,33 +137,45 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
             row.stack_bytes,
         ));
     }
+    let model: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
+    let columns = |shares: fn(&cycles::Row) -> &[Share]| {
+        model.iter().map(|row| (row.case.as_str(), shares(row))).collect::<Vec<Column<'_>>>()
+    };
     text.push('\n');
-    text.push_str(&files(rows));
+    let cycles = |share: &Share| format!("{:.0}", share.cycles);
+    text.push_str(&side_by_side("typ mean, by file", &columns(|row| &row.files), cycles));
+    text.push('\n');
+    let both = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
+    let heading = "typ mean, by class (instructions)";
+    text.push_str(&side_by_side(heading, &columns(|row| &row.classes), both));
     text
 }
 
-/// The table: what share of a tick each file of the model takes, cases side by side.
-fn files(rows: &[cycles::Row]) -> String {
-    let rows: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
+/// A case, and the parts that its ticks have.
+type Column<'a> = (&'a str, &'a [Share]);
+
+/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all of them.
+fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> String) -> String {
     let mut total: BTreeMap<&str, f64> = BTreeMap::new();
-    for (file, cycles) in rows.iter().flat_map(|row| &row.files) {
-        *total.entry(file).or_default() += cycles;
+    for share in columns.iter().flat_map(|(_, shares)| *shares) {
+        *total.entry(&share.name).or_default() += share.cycles;
     }
     let mut names: Vec<&str> = total.keys().copied().collect();
     names.sort_by(|a, b| total[b].total_cmp(&total[a]));
-    let mut text = String::from("| typ mean, by file |");
-    rows.iter().for_each(|row| text.push_str(&format!(" {} |", row.case)));
-    text.push_str("\n|---|");
-    rows.iter().for_each(|_| text.push_str("---:|"));
-    text.push('\n');
+
+    let line = |first: &str, cells: &mut dyn Iterator<Item = String>| {
+        cells.fold(format!("| {first} |"), |line, cell| line + &format!(" {cell} |")) + "\n"
+    };
+    let mut text = line(heading, &mut columns.iter().map(|(case, _)| (*case).to_owned()));
+    text.push_str(&format!("|---|{}\n", "---:|".repeat(columns.len())));
     for name in names {
-        text.push_str(&format!("| {name} |"));
-        for row in &rows {
-            let of_file = row.files.iter().find(|(file, _)| file == name);
-            text.push_str(&format!(" {:.0} |", of_file.map_or(0.0, |(_, cycles)| *cycles)));
-        }
-        text.push('\n');
+        let of_part = |(_, shares): &Column<'_>| {
+            shares.iter().find(|share| share.name == name).map_or("-".to_owned(), cell)
+        };
+        text.push_str(&line(name, &mut columns.iter().map(of_part)));
     }
+    let of_all = |(_, shares): &Column<'_>| cell(&Share::all(shares));
+    text.push_str(&line("all", &mut columns.iter().map(of_all)));
     text
 }
 
@@ -196,5 +208,30 @@ impl Place {
         let (before, rest) = text.split_once(begin).ok_or(ReadmeError::NoPlace(self))?;
         let (_, after) = rest.split_once(end).ok_or(ReadmeError::NoPlace(self))?;
         Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_stand_side_by_side_the_dearest_first_and_add_up() {
+        let share = |name: &str, instructions, cycles| Share {
+            name: name.to_owned(),
+            instructions,
+            cycles,
+        };
+        let one = [share("load", 3.0, 5.6), share("branch", 1.0, 2.8)];
+        let other = [share("branch", 4.0, 9.0)];
+        let cell = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
+        assert_eq!(
+            side_by_side("by class", &[("one", &one), ("other", &other)], cell),
+            "| by class | one | other |\n\
+             |---|---:|---:|\n\
+             | branch | 3 (1) | 9 (4) |\n\
+             | load | 6 (3) | - |\n\
+             | all | 8 (4) | 9 (4) |\n",
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! The table of costs, and the budgets they are held to.
 
 use super::bench::{BenchError, measure};
-use super::breakdown::{Part, by_file};
+use super::breakdown::{Part, by_class, by_file};
 use super::case::{self, CASES, Case, Subject};
 use super::estimator::Cost;
 use super::follow::{Count, Followed};
@@ -71,6 +71,36 @@ impl Spread {
     }
 }
 
+/// A part of what a tick takes, on average.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// What it is the part of.
+    pub name: String,
+    /// Instructions.
+    pub instructions: f64,
+    /// Cycles, typical setting.
+    pub cycles: f64,
+}
+
+impl Share {
+    /// Of so many ticks.
+    fn of(part: Part, ticks: usize) -> Self {
+        let mean = |all: u64| all as f64 / ticks as f64;
+        let Part { name, cost } = part;
+        Self { name, instructions: mean(cost.instructions), cycles: mean(cost.cycles[1]) }
+    }
+
+    /// The sum of parts.
+    pub fn all(parts: &[Self]) -> Self {
+        let sum = |what: fn(&Self) -> f64| parts.iter().map(what).sum();
+        Self {
+            name: "all".to_owned(),
+            instructions: sum(|part| part.instructions),
+            cycles: sum(|part| part.cycles),
+        }
+    }
+}
+
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -125,10 +155,12 @@ pub struct Row {
     pub budget: Option<u64>,
     /// Whether all budgets hold and none is stale.
     pub pass: bool,
-    /// Typical cycles of a tick, on average, by the model's file that they are part of, most first; none
-    /// for what is not the model.
+    /// What a tick takes, by the model's file that it is part of, most first; none for what is not the model.
     #[serde(default)]
-    pub files: Vec<(String, f64)>,
+    pub files: Vec<Share>,
+    /// The same by class of instruction.
+    #[serde(default)]
+    pub classes: Vec<Share>,
     /// What is wrong with a row that does not pass.
     #[serde(skip)]
     pub problem: String,
@@ -177,7 +209,7 @@ pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
     for (index, case) in CASES.iter().enumerate() {
         if case.is_model() {
             rows[index].both_modes_bytes = Some(both_modes_bytes(&image, case, &followed));
-            rows[index].files = files(&image, &followed[index])?;
+            (rows[index].files, rows[index].classes) = shares(&image, &followed[index])?;
         } else {
             rows[index].ratio = cycles_of_model(&rows, case.mode())
                 .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
@@ -187,11 +219,12 @@ pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
     Ok(rows)
 }
 
-/// Typical cycles of a tick by file.
-fn files(image: &Image, followed: &Followed) -> Result<Vec<(String, f64)>, ImageError> {
-    let parts = by_file(image, &followed.executions)?;
-    let each = |part: Part| (part.name, part.cost.cycles[1] as f64 / followed.calls.len() as f64);
-    Ok(parts.into_iter().map(each).collect())
+/// What a tick takes, by file and by class of instruction.
+fn shares(image: &Image, followed: &Followed) -> Result<(Vec<Share>, Vec<Share>), ImageError> {
+    let of_tick = |parts: Vec<Part>| {
+        parts.into_iter().map(|part| Share::of(part, followed.calls.len())).collect()
+    };
+    Ok((of_tick(by_file(image, &followed.executions)?), of_tick(by_class(&followed.executions))))
 }
 
 /// Bytes of code and tables of the model in a case's arithmetic, all its modes that are measured.
@@ -243,6 +276,7 @@ fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
         budget: None,
         pass: true,
         files: Vec::new(),
+        classes: Vec::new(),
         problem: String::new(),
     }
 }
