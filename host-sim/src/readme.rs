@@ -115,20 +115,21 @@ pub fn error_budget(report: &Report) -> String {
     text
 }
 
-/// The table: what a tick costs, beside the baselines.
+/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what instructions.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
-        "| case | typ mean | typ max | pess max | x model | max % F0 | state B | code B | both modes B | stack B |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows {
         text.push_str(&format!(
-            "| {} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
             row.case,
             row.cycles_typ_mean,
             row.cycles_typ_max,
             row.cycles_pess_max,
+            row.maximum_over_mean(),
             optional(row.ratio.map(|ratio| format!("{ratio:.1}"))),
             optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
             row.state_bytes,
@@ -163,19 +164,19 @@ fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> Strin
     let mut names: Vec<&str> = total.keys().copied().collect();
     names.sort_by(|a, b| total[b].total_cmp(&total[a]));
 
-    let line = |first: &str, cells: &mut dyn Iterator<Item = String>| {
-        cells.fold(format!("| {first} |"), |line, cell| line + &format!(" {cell} |")) + "\n"
+    let line = |first: &str, cell: &dyn Fn(&Column<'_>) -> String| {
+        let cells: Vec<String> = columns.iter().map(cell).collect();
+        format!("| {first} | {} |\n", cells.join(" | "))
     };
-    let mut text = line(heading, &mut columns.iter().map(|(case, _)| (*case).to_owned()));
+    let mut text = line(heading, &|(case, _)| (*case).to_owned());
     text.push_str(&format!("|---|{}\n", "---:|".repeat(columns.len())));
     for name in names {
-        let of_part = |(_, shares): &Column<'_>| {
-            shares.iter().find(|share| share.name == name).map_or("-".to_owned(), cell)
-        };
-        text.push_str(&line(name, &mut columns.iter().map(of_part)));
+        text.push_str(&line(name, &|(_, shares)| {
+            let share = shares.iter().find(|share| share.name == name);
+            share.map_or("-".to_owned(), cell)
+        }));
     }
-    let of_all = |(_, shares): &Column<'_>| cell(&Share::all(shares));
-    text.push_str(&line("all", &mut columns.iter().map(of_all)));
+    text.push_str(&line("all", &|(_, shares)| cell(&Share::all(shares))));
     text
 }
 

@@ -290,7 +290,7 @@ fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
         let then = [injection, Request::Report, Request::Arm];
         let (before, said) = machine.stimulated(latched, &then);
         let Said::Report(after) = said[1] else { panic!("{said:?}") };
-        assert_eq!(after.state, State::Latched(fault));
+        assert_eq!(after.state, State::Latched(fault), "{after:?}");
         assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
         // In the report that follows it. How many ticks that takes depends on how fast this host sends it.
         assert!(after.ticks > before.ticks);
@@ -398,8 +398,8 @@ fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     (before, pins.closed)
 }
 
-/// How often the bridge can be closed, at most, in so many ticks: twice for a pulse, and each channel's comes behind
-/// another's.
+/// How often the bridge can be closed, at most, in so many ticks, less than the time between two pulses of a channel:
+/// twice for a pulse, and each channel's comes behind another's.
 fn closed_in(ticks: u32) -> u32 {
     let one_after_another = (ticks * TICK_US).div_ceil(stimulus(10_000).duration_us());
     2 * one_after_another.min(CHANNELS as u32)

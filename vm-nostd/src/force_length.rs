@@ -85,7 +85,7 @@ impl ForceLengthParams {
 }
 
 /// Nearer to their optimal length (L_ce0) fascicles are taken to be as far as this from it, where FL is 1
-/// to 1e-4 at most, and to 2e-9 for published types: the slope of |L - 1|^rho has a cusp.
+/// to 1e-4 at most, and to 2e-9 for the paper's types: the slope of |L - 1|^rho has a cusp.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.
@@ -173,6 +173,7 @@ pub(crate) mod tests {
     fn at_the_optimal_length_it_is_1_and_flat() {
         for p in PAPER_MUSCLE.fibers.map(|fiber| fiber.fiber_type.force_length) {
             let (f32, fixed) = (force_length::<f32>(&p), force_length::<Fixed>(&p));
+            assert!(papers_force_length(&p, 1.0 + NEAREST) > 1.0 - 2e-9);
             for units in -300..=300 {
                 let length = 1.0 + f64::from(units) * 2_f64.powi(-23);
                 let of_f32 = f32(length as f32);
@@ -201,6 +202,7 @@ pub(crate) mod tests {
                             assert!(error < 1.2e-4, "{p:?}, L {length}: {found} {exact}");
                         }
                     }
+                    assert!(papers_force_length(&p, 1.0 + NEAREST) > 1.0 - 1e-4, "{p:?}");
                     // What sums of terms, and of the slope's, may be in fixed point.
                     let terms = p.smooth(FASCICLE_DOMAIN).map(f64::abs);
                     let steep =

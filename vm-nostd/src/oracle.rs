@@ -93,21 +93,6 @@ fn slope(f: impl Fn(f64) -> f64, x: f64) -> f64 {
 }
 
 #[test]
-fn softplus_is_the_logarithm_of_one_plus_exp() {
-    let (mut value, mut steepness) = (Worst::default(), Worst::default());
-    for x in spaced(-60.0, 60.0, 4001) {
-        let x = shared(x);
-        let exact = x.max(0.0) + (-x.abs()).exp().ln_1p();
-        let ((v32, s32), (v64, s64)) = ((x as f32).softplus(), x.softplus());
-        let (fixed, fixed_slope) = q(x).softplus();
-        value.see(v32, fixed, v64, exact);
-        steepness.see(s32, fixed_slope, s64, 1.0 / (1.0 + (-x).exp()));
-    }
-    value.assert(2e-6, 1e-7, 2.2e-16, "softplus");
-    steepness.assert(2e-5, 3e-6, 3e-16, "its slope");
-}
-
-#[test]
 fn the_tendon_pulls_as_the_paper_says() {
     let p = &paper_table_1::ELEMENTS.tendon;
     let (fascicle, tendon) = (0.11, 0.02);

@@ -14,11 +14,11 @@ pub struct CyclesArgs {
     /// Print the rows as a JSON array instead of a table.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     json: bool,
-    /// Fail where a budget of data/budgets.toml is exceeded or stale, or the README's table is not
+    /// Fail where a budget of data/budgets.toml is exceeded or stale, or the README's tables are not
     /// what is measured.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     check: bool,
-    /// Write the table into the README.
+    /// Write the tables into the README.
     #[arg(long, conflicts_with_all = ["case", "elf", "check"])]
     write: bool,
     /// Share of the core's time that muscles may take, 0.01 to 1.
@@ -104,7 +104,7 @@ fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     failed.iter().for_each(|row| complain(&format!("{}: {}", row.case, row.problem)));
     let current = readme::CYCLES.is_current(&readme::cycles(&rows))?;
     if !current {
-        complain("the README's table is not what is measured: cargo vm cycles --write");
+        complain("the README's tables are not what is measured: cargo vm cycles --write");
     }
     Ok(failed.is_empty() && current)
 }

@@ -327,12 +327,22 @@ impl Budgets {
         if !within {
             problems.push(format!("maximum over mean {spread:.3} > {most}"));
         }
+        for (what, parts) in [("files", &row.files), ("classes", &row.classes)] {
+            let (sum, mean) = (Share::all(parts).cycles, row.cycles_typ_mean);
+            let adds_up = (sum - mean).abs() < 0.5;
+            if !adds_up {
+                problems.push(format!("{what} add up to {sum:.0} of {mean:.0} cycles"));
+            }
+        }
         problems
     }
 
     fn problems_of_literal(&self, row: &Row) -> Vec<String> {
         let least = self.literal_over_model;
         match row.ratio {
+            Some(ratio) if least < USED * ratio => {
+                vec![format!("{ratio:.1} times the model leaves a stale limit of {least}")]
+            }
             Some(ratio) if ratio >= least => Vec::new(),
             Some(ratio) => vec![format!("{ratio:.1} times the model < {least}")],
             None => vec!["no model to compare with".to_owned()],
@@ -354,7 +364,14 @@ mod tests {
             executions: Vec::new(),
         };
         let row = row(case, &followed, Some(0.1));
-        Row { both_modes_bytes: Some(9000), ratio: Some(120.0), ..row }
+        let share = |name: &str, cycles| Share { name: name.to_owned(), instructions: 1.0, cycles };
+        Row {
+            both_modes_bytes: Some(9000),
+            ratio: Some(120.0),
+            files: vec![share("muscle.rs", 500.0), share("tendon.rs", 400.0)],
+            classes: vec![share("load", 900.0)],
+            ..row
+        }
     }
 
     fn budgets() -> Budgets {
@@ -412,13 +429,15 @@ mod tests {
     }
 
     #[test]
-    fn a_model_without_budget_or_with_an_expensive_tick_does_not_pass() {
+    fn a_model_without_budget_with_an_expensive_tick_or_with_parts_missing_does_not_pass() {
         let none = problem(&CASES[0], |budgets, _| budgets.model.clear());
         assert_eq!(none, "no budget");
         let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
         assert_eq!(spread, "maximum over mean 1.111 > 1.1");
         let none = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = f64::NAN);
         assert_eq!(none, "maximum over mean 1.111 > NaN");
+        let lost = problem(&CASES[0], |_, row| drop(row.files.pop()));
+        assert_eq!(lost, "files add up to 500 of 900 cycles");
     }
 
     #[test]
@@ -427,6 +446,7 @@ mod tests {
         assert_eq!(problem(literal, |_, _| ()), "");
         let with = |ratio| problem(literal, |_, row| row.ratio = ratio);
         assert_eq!(with(Some(99.4)), "99.4 times the model < 100");
+        assert_eq!(with(Some(126.0)), "126.0 times the model leaves a stale limit of 100");
         assert_eq!(with(None), "no model to compare with");
     }
 

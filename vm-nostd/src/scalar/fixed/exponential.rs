@@ -53,7 +53,7 @@ fn shifted(mantissa: u32, shift: u32) -> u32 {
     if shift <= 32 { ((mantissa >> (shift - 1)) + 1) >> 1 } else { 0 }
 }
 
-/// e^x in Q8.24, saturated; within 1 unit where it is below 1, and within 2^-28 of its value above.
+/// e^x in Q8.24, saturated; within 1 unit and 2^-28 of its value.
 ///
 /// # Scaling and overflow
 /// Exponents run from -185 to 184. A mantissa in Q1.31 becomes Q8.24 by a shift of 7 to the right,

@@ -35,7 +35,8 @@ impl Factor {
         Self { mantissa, shift: shift as u8 }
     }
 
-    /// Units times the factor, rounded; saturated. Lengths and their changes go through this: cut off
+    /// Units times the factor, rounded, within 0.51 units and 2^-31 of the product (of a factor below 2^-32, half its
+    /// mantissa's last bit); saturated. Lengths and their changes go through this: cut off
     /// tick by tick, fascicles would creep.
     ///
     /// # Scaling and overflow
