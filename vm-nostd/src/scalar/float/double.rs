@@ -17,7 +17,7 @@ pub(super) fn softplus(x: f64) -> (f64, f64) {
     if x > 0.0 { (x + tail, share) } else { (tail, decay * share) }
 }
 
-/// 1 - e^-e^x, within 5e-16 of its value, and its slope, within 1e-15.
+/// 1 - e^-e^x, within 5e-16 of its value, and its slope, within 2e-16.
 pub(super) fn weibull(x: f64) -> (f64, f64) {
     let power = libm::exp(x.min(MOST));
     let left = libm::exp(-power);
@@ -62,13 +62,13 @@ mod tests {
     }
 
     #[test]
-    fn weibulls_distribution_is_within_5e16th_of_its_value_and_its_slope_within_1e15th() {
+    fn weibulls_distribution_is_within_5e16th_of_its_value_and_its_slope_within_2e16th() {
         for x in numbers() {
             let power = x.exp();
             let (value, slope) = weibull(x);
             let (exact, steepness) = (-(-power).exp_m1(), (x - power).exp());
             assert!((value / exact - 1.0).abs() <= 5e-16, "{x}: {value} {exact}");
-            assert!((slope - steepness).abs() <= 1e-15, "{x}: {slope} {steepness}");
+            assert!((slope - steepness).abs() <= 2e-16, "{x}: {slope} {steepness}");
         }
     }
 }
