@@ -136,7 +136,7 @@ static SOFTPLUS: [[f32; 4]; PIECES] = {
     table
 };
 
-/// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within 3e-5.
+/// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within 2e-5.
 ///
 /// Far below 0 it is e^x: what balances two such forces, in a muscle that rests slack, is their
 /// ratio.
@@ -271,14 +271,14 @@ mod tests {
     }
 
     #[test]
-    fn softplus_is_within_2e6th_and_2e5th_of_its_value_and_its_slope_within_3e5th() {
+    fn softplus_is_within_2e6th_and_2e5th_of_its_value_and_its_slope_within_2e5th() {
         let error = |x: f32, exact: f64| {
             let expected = exact.max(0.0) + (-exact.abs()).exp().ln_1p();
             let slope = 1.0 / (1.0 + (-exact).exp());
             let (value, steepness) = softplus(x);
             let relative = (f64::from(value) - expected).abs() / expected;
             let absolute = (f64::from(value) - expected).abs() - 1e-7 * exact.max(0.0);
-            (relative / 2e-5).max(absolute / 2e-6).max((f64::from(steepness) - slope).abs() / 3e-5)
+            (relative / 2e-5).max(absolute / 2e-6).max((f64::from(steepness) - slope).abs() / 2e-5)
         };
         let found = worst(-87.0, 60.0, error);
         assert!(found <= 1.0, "{found} of the bounds");

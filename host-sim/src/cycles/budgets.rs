@@ -1,0 +1,191 @@
+//! The budgets that costs are held to.
+
+use super::case::{Case, Subject};
+use super::report::{Row, Share};
+use crate::engine::Arithmetic;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+const BUDGETS: &str = include_str!("../../data/budgets.toml");
+/// What the timing model may be short of hardware by.
+pub const MARGIN: f64 = 1.05;
+/// A budget of which less than this share is used is stale.
+const USED: f64 = 0.8;
+
+/// What `data/budgets.toml` holds.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Budgets {
+    /// Most that the most expensive tick may take, relative to the mean, pessimistic.
+    maximum_over_mean: f64,
+    /// Least that the literal port in `f32` takes, relative to the model.
+    literal_over_model: f64,
+    /// Of each case of the model.
+    model: BTreeMap<String, Budget>,
+}
+
+/// What a case may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Budget {
+    /// Pessimistic cycles of the most expensive tick, and the margin on top.
+    cycles: u64,
+    /// Bytes of a muscle's state.
+    state_bytes: u32,
+    /// Bytes of code.
+    code_bytes: u32,
+    /// Bytes of code and tables of both modes.
+    both_modes_bytes: u32,
+    /// Bytes of stack.
+    stack_bytes: u32,
+}
+
+impl Budgets {
+    /// Those of `data/budgets.toml`.
+    pub fn read() -> Result<Self, toml::de::Error> {
+        toml::from_str(BUDGETS)
+    }
+
+    /// Holds a case's row to what it may cost.
+    pub fn hold(&self, case: &Case, row: &mut Row) {
+        let budget = self.model.get(case.name);
+        let problems = match (case.subject, budget) {
+            (Subject::Model(..), Some(budget)) => self.problems_of_model(row, budget),
+            (Subject::Model(..), None) => vec!["no budget".to_owned()],
+            (Subject::Literal(_, Arithmetic::F32), _) => self.problems_of_literal(row),
+            _ => Vec::new(),
+        };
+        row.budget = budget.map(|budget| budget.cycles);
+        row.pass = problems.is_empty();
+        row.problem = problems.join("; ");
+    }
+
+    fn problems_of_model(&self, row: &Row, budget: &Budget) -> Vec<String> {
+        let cycles = (row.cycles_pess_max as f64 * MARGIN).ceil() as u64;
+        let used = [
+            ("cycles", cycles, budget.cycles),
+            ("state_bytes", row.state_bytes.into(), budget.state_bytes.into()),
+            ("code_bytes", row.code_bytes.into(), budget.code_bytes.into()),
+            (
+                "both_modes_bytes",
+                row.both_modes_bytes.map_or(u64::MAX, u64::from),
+                budget.both_modes_bytes.into(),
+            ),
+            ("stack_bytes", row.stack_bytes.into(), budget.stack_bytes.into()),
+        ];
+        let mut problems: Vec<String> = used
+            .into_iter()
+            .filter_map(|(what, used, budget)| {
+                if used > budget {
+                    Some(format!("{what} {used} > budget {budget}"))
+                } else if (used as f64) < USED * budget as f64 {
+                    Some(format!("{what} {used} leaves a stale budget of {budget}"))
+                } else {
+                    None
+                }
+            })
+            .collect();
+        let (spread, most) = (row.maximum_over_mean(), self.maximum_over_mean);
+        // No number is not within it.
+        let within = spread <= most;
+        if !within {
+            problems.push(format!("maximum over mean {spread:.3} > {most}"));
+        }
+        for (what, parts) in [("files", &row.files), ("classes", &row.classes)] {
+            let (sum, mean) = (Share::all(parts).cycles, row.cycles_typ_mean);
+            let adds_up = (sum - mean).abs() < 0.5;
+            if !adds_up {
+                problems.push(format!("{what} add up to {sum:.0} of {mean:.0} cycles"));
+            }
+        }
+        problems
+    }
+
+    fn problems_of_literal(&self, row: &Row) -> Vec<String> {
+        let least = self.literal_over_model;
+        match row.ratio {
+            Some(ratio) if least < USED * ratio => {
+                vec![format!("{ratio:.1} times the model leaves a stale limit of {least}")]
+            }
+            Some(ratio) if ratio >= least => Vec::new(),
+            Some(ratio) => vec![format!("{ratio:.1} times the model < {least}")],
+            None => vec!["no model to compare with".to_owned()],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::CASES;
+    use super::super::report::tests::a_row;
+    use super::*;
+
+    fn budgets() -> Budgets {
+        let budget = Budget {
+            cycles: 1050,
+            state_bytes: CASES[0].state_bytes(),
+            code_bytes: 5000,
+            both_modes_bytes: 9000,
+            stack_bytes: 200,
+        };
+        let model = [(CASES[0].name.to_owned(), budget)].into();
+        Budgets { maximum_over_mean: 1.12, literal_over_model: 100.0, model }
+    }
+
+    /// What is wrong with a row, once the first case's budget is changed.
+    fn problem(case: &Case, change: impl Fn(&mut Budgets, &mut Row)) -> String {
+        let (mut budgets, mut row) = (budgets(), a_row(case));
+        change(&mut budgets, &mut row);
+        budgets.hold(case, &mut row);
+        assert_eq!(row.pass, row.problem.is_empty());
+        row.problem
+    }
+
+    #[test]
+    fn a_budget_is_neither_exceeded_nor_stale() {
+        let with = |change: fn(&mut Budget)| {
+            problem(&CASES[0], |budgets, _| budgets.model.values_mut().for_each(change))
+        };
+        assert_eq!(with(|_| ()), "");
+        assert_eq!(with(|b| b.cycles = 1049), "cycles 1050 > budget 1049");
+        assert_eq!(with(|b| b.cycles = 1313), "cycles 1050 leaves a stale budget of 1313");
+        assert_eq!(with(|b| b.stack_bytes = 199), "stack_bytes 200 > budget 199");
+        assert_eq!(with(|b| b.code_bytes = 6300), "code_bytes 5000 leaves a stale budget of 6300");
+        assert_eq!(with(|b| b.both_modes_bytes = 8999), "both_modes_bytes 9000 > budget 8999");
+        let state_bytes = CASES[0].state_bytes();
+        let (less, exceeded) = (state_bytes - 1, with(|b| b.state_bytes -= 1));
+        assert_eq!(exceeded, format!("state_bytes {state_bytes} > budget {less}"));
+    }
+
+    #[test]
+    fn a_model_without_budget_with_an_expensive_tick_or_with_parts_missing_does_not_pass() {
+        let none = problem(&CASES[0], |budgets, _| budgets.model.clear());
+        assert_eq!(none, "no budget");
+        let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
+        assert_eq!(spread, "maximum over mean 1.111 > 1.1");
+        let none = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = f64::NAN);
+        assert_eq!(none, "maximum over mean 1.111 > NaN");
+        let lost = problem(&CASES[0], |_, row| drop(row.files.pop()));
+        assert_eq!(lost, "files add up to 500 of 900 cycles");
+    }
+
+    #[test]
+    fn the_literal_port_is_slower_by_as_much_as_is_claimed() {
+        let literal = Case::named("literal-fes-f32").expect("a case");
+        assert_eq!(problem(literal, |_, _| ()), "");
+        let with = |ratio| problem(literal, |_, row| row.ratio = ratio);
+        assert_eq!(with(Some(99.4)), "99.4 times the model < 100");
+        assert_eq!(with(Some(126.0)), "126.0 times the model leaves a stale limit of 100");
+        assert_eq!(with(None), "no model to compare with");
+    }
+
+    #[test]
+    fn every_case_of_the_model_has_a_budget() {
+        let budgets = Budgets::read().expect("budgets");
+        let names: Vec<&str> = budgets.model.keys().map(String::as_str).collect();
+        let cases = CASES.iter().filter(|case| case.is_model());
+        let mut expected: Vec<&str> = cases.map(|case| case.name).collect();
+        expected.sort_unstable();
+        assert_eq!(names, expected);
+    }
+}
