@@ -10,10 +10,6 @@ pub struct Readme;
 pub struct ModelReadme;
 
 pub mod debugger;
-pub mod device;
-pub mod electrodes;
-pub mod host;
-pub mod muscles;
 
 use host_sim::target::{self, Board, TargetError};
 use std::io::Write;

@@ -17,8 +17,8 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use stimulator_tests::host::{READINGS, fes};
 use system_tests::debugger::Port;
-use system_tests::host::{READINGS, fes};
 use system_tests::{build, skip};
 
 fn data(name: &str) -> PathBuf {

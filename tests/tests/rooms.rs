@@ -66,3 +66,14 @@ fn the_model_needs_no_std_no_heap_and_no_unsafe() {
 fn only_the_board_names_the_chip() {
     assert_eq!(mentions("firmware/src", &["SYST", "set_reload", "stm32"]), ["board.rs"]);
 }
+
+/// What is built for each mutant of the libraries.
+#[test]
+fn the_tests_of_the_libraries_build_without_the_host() {
+    for package in ["tests/model", "tests/stimulator", "firmware", "vm-nostd"] {
+        let manifest = root().join(package).join("Cargo.toml");
+        let text = fs::read_to_string(manifest).expect("a manifest");
+        let knows = |name: &&str| text.lines().any(|line| line.starts_with(*name));
+        assert_eq!(["host-sim", "system-tests"].iter().find(|name| knows(name)), None, "{package}");
+    }
+}

@@ -1,10 +1,10 @@
 //! A host at the other end of a device's line, and what it mostly asks for.
 
+use crate::client::Client;
 use crate::device::{InProcess, Memory};
 use firmware::link::{Answer, Mode, Readings, Report, Request, Upload};
 use firmware::safety::{CHANNELS, Fault, State};
 use firmware::{MUSCLE, Stimulus};
-use host_sim::hil::Client;
 
 /// A host and its device.
 pub type Host = Client<InProcess<Memory>>;

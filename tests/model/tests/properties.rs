@@ -1,7 +1,7 @@
 //! What holds for every valid muscle, whatever its inputs.
 
+use model_tests::muscles::{Discrete, Mode, TYPES, built, config, muscles, steps};
 use proptest::prelude::*;
-use system_tests::muscles::{Discrete, Mode, TYPES, built, config, muscles, steps};
 use vm_nostd::{
     ContinuousMuscle, EffectiveLength, FascicleLength, FesMuscle, Input, IntramuscularFes, Muscle,
     MuscleParams, NaturalContinuous, Output, State, Status, TimeStep,

@@ -1,7 +1,7 @@
 //! The recruitment curve in `f32` and fixed point, against its equations in `f64`.
 
+use model_tests::muscles::config;
 use proptest::prelude::*;
-use system_tests::muscles::config;
 use vm_nostd::{Fixed, Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams, Scalar};
 
 /// U of a pulse (mA, µs), from the equations.

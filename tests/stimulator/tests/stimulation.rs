@@ -7,9 +7,9 @@ use firmware::{
     Bridge, LEAST_PHASE_US, OutputError, OutputStage, Plan, Pulse, Schedule, Step, Stimulus,
     StimulusError,
 };
+use model_tests::muscles::config;
 use proptest::prelude::*;
-use system_tests::electrodes::{CHANNELS, SCALE, Shared, Stage, stage};
-use system_tests::muscles::config;
+use stimulator_tests::electrodes::{CHANNELS, SCALE, Shared, Stage, stage};
 
 /// Puts out a step, and lets its time pass.
 fn pass(stage: &mut Stage, shared: &Shared, step: &Step) {
@@ -249,7 +249,7 @@ fn what_does_not_answer_leaves_the_rest_neutral() {
     assert!(!electrodes.cathodic && !electrodes.anodic && electrodes.channels == [false; CHANNELS]);
     drop(electrodes);
 
-    let (mut stage, shared) = system_tests::electrodes::stage();
+    let (mut stage, shared) = stimulator_tests::electrodes::stage();
     pass(&mut stage, &shared, &settling);
     pass(&mut stage, &shared, &first);
     shared.borrow_mut().words = 0;
@@ -257,7 +257,7 @@ fn what_does_not_answer_leaves_the_rest_neutral() {
     assert_eq!(stage.apply(&last), Err(OutputError::Pin));
     assert_eq!(shared.borrow().counts, 0, "no current through pins that do not switch");
 
-    let (mut stage, shared) = system_tests::electrodes::stage();
+    let (mut stage, shared) = stimulator_tests::electrodes::stage();
     pass(&mut stage, &shared, &settling);
     pass(&mut stage, &shared, &first);
     shared.borrow_mut().words = 0;

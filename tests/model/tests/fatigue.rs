@@ -1,7 +1,7 @@
 //! Fatigue in `f32` and fixed point against its equation, slow as it may be, and whatever comes.
 
+use model_tests::muscles::config;
 use proptest::prelude::*;
-use system_tests::muscles::config;
 use vm_nostd::{Fatigue, FatigueParams, FatigueState, Fixed, Scalar, TimeStep};
 
 /// fit after `time` (s) from rest at a constant activation and frequency (pps).

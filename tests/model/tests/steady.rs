@@ -1,29 +1,11 @@
-//! The inverse under FES: the stimulation it names, held by the reference for seconds, makes the force that
-//! was asked for.
+//! The inverse under FES by itself: a force is found again, the nearest is named of one that cannot be held.
 
-use host_sim::engine::{self, Arithmetic};
-use host_sim::link;
-use host_sim::reference::{Input, Mode, Muscle};
-use host_sim::scenario::paper_muscle;
-use host_sim::trace::InputTrace;
+use firmware::MUSCLE;
+use model_tests::muscles::{TYPES, config, muscles};
 use proptest::prelude::*;
-use system_tests::muscles::{TYPES, config, muscles};
 use vm_nostd::{FesMuscle, Fixed, MuscleParams, Scalar, Status, Steady, SteadyFes, TimeStep};
 
 const PATHS: [f64; 4] = [0.13, 0.145, 0.16, 0.175];
-const FREQUENCIES: [f64; 3] = [8.0, 20.0, 45.0];
-/// As long as it takes to come to rest, s.
-const HELD: f64 = 4.0;
-
-/// The force (N) that the reference holds in the end.
-fn held(muscle: &Muscle, activation: f64, path_length: f64, stimulation_frequency: f64) -> f64 {
-    let input = Input { activation, path_length, stimulation_frequency };
-    let time_step = 2e-3;
-    let inputs = vec![input; (HELD / time_step) as usize];
-    let trace = InputTrace { start: 0.0, time_step, inputs };
-    let rows = engine::run(muscle, Mode::Fes, Arithmetic::Reference, &trace).expect("a run");
-    rows.last().expect("a row").0.force
-}
 
 fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Input<S> {
     vm_nostd::Input {
@@ -36,51 +18,6 @@ fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Inp
 /// A force in N as an arithmetic has it.
 fn force<S: Scalar>(newtons: f64) -> S::Force {
     S::ONE.force(&S::force_factor(newtons))
-}
-
-/// The largest errors, in % of F0: of the steady force, and of the force that the inverse gets.
-fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
-    let muscle = paper_muscle();
-    let f0 = muscle.f0();
-    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
-    let (mut forward, mut inverse) = (0.0_f64, 0.0_f64);
-    for &(activation, path, frequency, reference) in references {
-        let found = steady.force(input(activation, path, frequency));
-        assert!(found.status.is_empty(), "{:?}", found.status);
-        forward = forward.max((S::newtons(found.force) - reference).abs());
-
-        let wanted = force::<S>(reference);
-        let (path_length, f) = (S::path_length(path), S::quantity(frequency));
-        let found = steady.activation_for(wanted, path_length, f);
-        if found.status.is_empty() {
-            let got = held(&muscle, found.activation.to_f64(), path, frequency);
-            inverse = inverse.max((got - reference).abs());
-        } else {
-            // At the ends of what can be reached, the nearest may be either side of it.
-            assert_eq!(found.status, Status::FORCE_UNREACHABLE);
-            assert!([0.0, 1.0].contains(&activation), "U {activation} {path} m {frequency} pps");
-            inverse = inverse.max((S::newtons(found.force) - reference).abs());
-        }
-    }
-    [forward, inverse].map(|newtons| 100.0 * newtons / f0)
-}
-
-#[test]
-fn the_reference_holds_the_force_that_was_asked_for() {
-    let muscle = paper_muscle();
-    let mut references = Vec::new();
-    for path in PATHS {
-        for frequency in FREQUENCIES {
-            for activation in [0.0, 0.05, 0.3, 0.6, 0.9, 1.0] {
-                let force = held(&muscle, activation, path, frequency);
-                references.push((activation, path, frequency, force));
-            }
-        }
-    }
-    let (single, fixed) = (errors::<f32>(&references), errors::<Fixed>(&references));
-    let within = |found: [f64; 2], most: [f64; 2]| found[0] <= most[0] && found[1] <= most[1];
-    assert!(within(single, [1.1e-4, 1e-4]), "{single:?}");
-    assert!(within(fixed, [1.9e-3, 1.9e-3]), "{fixed:?}");
 }
 
 /// Of any muscle: the force that a stimulation holds is held by the stimulation that its inverse names.
@@ -127,8 +64,7 @@ proptest! {
 
 /// What cannot be held is flagged, with the nearest that can.
 fn unreachable<S: Scalar>() {
-    let muscle = paper_muscle();
-    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let steady = SteadyFes::<S, 2>::build(&MUSCLE).expect("a muscle");
     let (path, frequency) = (S::path_length(0.16), S::quantity(20.0));
     let newtons = |steady: Steady<S>| S::newtons(steady.force);
     let nothing = steady.force(input(0.0, 0.16, 20.0));
@@ -154,8 +90,7 @@ fn unreachable<S: Scalar>() {
 fn unreachable_forces_are_flagged_with_the_nearest() {
     unreachable::<f32>();
     unreachable::<Fixed>();
-    let muscle = paper_muscle();
-    let steady = SteadyFes::<f32, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let steady = SteadyFes::<f32, 2>::build(&MUSCLE).expect("a muscle");
     let found = steady.activation_for(f32::NAN, 0.16, 20.0);
     assert_eq!(found.status, Status::FORCE_UNREACHABLE);
     assert_eq!(found.activation, 0.0);
@@ -163,19 +98,21 @@ fn unreachable_forces_are_flagged_with_the_nearest() {
 
 /// The greatest force that can be held, and whatever is near it, is held with all there is: never with nothing.
 fn the_greatest<S: Scalar>() {
-    let muscle = paper_muscle();
-    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let steady = SteadyFes::<S, 2>::build(&MUSCLE).expect("a muscle");
     for path in 0..=100 {
         let path = 0.12 + 0.0006 * f64::from(path);
         for frequency in [5.0, 10.0, 20.0, 30.0, 50.0, 80.0] {
             let all = steady.force(input(1.0, path, frequency));
             for by in [-1e-4, -1e-5, -1e-6, 0.0, 1e-6, 1e-5, 1e-4] {
-                let newtons = S::newtons(all.force) + by * muscle.f0();
+                let newtons = S::newtons(all.force) + by * MUSCLE.max_isometric_force();
                 let wanted = if by == 0.0 { all.force } else { force::<S>(newtons) };
                 let (path_length, f) = (S::path_length(path), S::quantity(frequency));
                 let found = steady.activation_for(wanted, path_length, f);
                 let off = (S::newtons(found.force) - newtons).abs();
-                assert!(off <= 1.1e-4 * muscle.f0() + 1e-3, "{path} m, {frequency} pps: {found:?}");
+                assert!(
+                    off <= 1.1e-4 * MUSCLE.max_isometric_force() + 1e-3,
+                    "{path} m, {frequency} pps: {found:?}"
+                );
                 let beyond = found.status.contains(Status::FORCE_UNREACHABLE);
                 assert!(!beyond || by >= 9e-5, "{path} m, {frequency} pps, {by:e}: {found:?}");
             }
@@ -198,18 +135,18 @@ fn where_there_are_several_balances_the_answer_holds_or_is_flagged() {
     for ratio in [30.0, 39.2, 48.0] {
         let (fascicle, tendon) = (0.02, 0.02 * ratio);
         // Mostly fast, and long: Af falls steeply with length at a low frequency.
-        let mut muscle = Muscle {
+        let mut muscle = MuscleParams {
             mass: 12e-3,
-            L_ce0: fascicle,
-            L_se0: tendon,
-            L_mt_max: 0.96 * tendon + 1.6 * fascicle,
-            ..paper_muscle()
+            fascicle_length: fascicle,
+            tendon_length: tendon,
+            max_path_length: 0.96 * tendon + 1.6 * fascicle,
+            ..MUSCLE
         };
         for (fiber, fraction) in muscle.fibers.iter_mut().zip([0.1, 0.9]) {
             fiber.fraction = fraction;
         }
-        let f0 = muscle.f0();
-        let steady = SteadyFes::<f64, 2>::build(&link::params(&muscle)).expect("a muscle");
+        let f0 = muscle.max_isometric_force();
+        let steady = SteadyFes::<f64, 2>::build(&muscle).expect("a muscle");
         for share in 1..40 {
             for path in 0..60 {
                 let path = 0.965 * tendon + (0.55 + 0.02 * f64::from(path)) * fascicle;
@@ -234,9 +171,8 @@ fn where_there_are_several_balances_the_answer_holds_or_is_flagged() {
 /// The model itself comes to rest where its steady state says.
 #[test]
 fn the_model_settles_in_its_steady_state() {
-    let params = link::params::<2>(&paper_muscle());
-    let muscle = FesMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("a muscle");
-    let steady = SteadyFes::<f32, 2>::build(&params).expect("a muscle");
+    let muscle = FesMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
+    let steady = SteadyFes::<f32, 2>::build(&MUSCLE).expect("a muscle");
     for path in PATHS {
         let input = input(0.45, path, 20.0);
         let mut state = muscle.rest(path as f32).expect("a path");

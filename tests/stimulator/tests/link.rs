@@ -1,18 +1,11 @@
 //! The link: what a host can do to a device, and what nothing on the line can.
 
-use firmware::link::{
-    Answer, Electrode, Message, NO_SESSION, Readings, Receiver, Request, RowInputs, SessionNumber,
-    Upload, encode,
-};
+use firmware::link::{Answer, Electrode, Readings, Request, RowInputs, Upload};
 use firmware::safety::{Fault, Limits, NotArmed, State};
 use firmware::{MUSCLES, Stimulus};
-use host_sim::hil::{self, Client, HilError};
-use host_sim::reference::Mode;
-use host_sim::{muscle_file, trace};
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
-use system_tests::device::{InProcess, Memory};
-use system_tests::host::{Host, READINGS, STIMULUS, arm, booted, fes, report};
+use stimulator_tests::client::{Client, ClientError};
+use stimulator_tests::device::InProcess;
+use stimulator_tests::host::{Host, READINGS, STIMULUS, arm, booted, fes, report};
 use vm_nostd::RecruitmentCurveParams;
 
 /// An electrode with which nothing is wrong.
@@ -28,83 +21,6 @@ const ELECTRODE: Electrode = Electrode {
     gap_us: 40,
     recovery: 1,
 };
-
-fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/data").join(name)
-}
-
-/// A trace of the authors' program, played to the firmware: bits equal to the host's own run.
-#[test]
-fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
-    let muscle =
-        muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
-    for (vector, mode) in [("fes_steps", Mode::Fes), ("continuous_length_3hz", Mode::Continuous)] {
-        let trace = trace::read_inputs(&data(&format!("vectors/{vector}.csv"))).expect("inputs");
-        let mut host = Client::new(InProcess::boot(Memory::new()));
-        let played = hil::play(&mut host, &muscle, mode, &trace, &mut |_| ()).expect("equal bits");
-        assert_eq!(played.rows.len(), trace.inputs.len());
-        assert_eq!(played.report.rows as usize, trace.inputs.len() - 1);
-        assert_eq!(played.report.frames.broken + played.report.frames.refused, 0);
-        // Without arming, no current, whatever the rows say.
-        assert_eq!(host.line().flowed(), 0);
-    }
-}
-
-/// The comparison can fail: a device that was given another muscle.
-#[test]
-fn another_muscle_has_other_bits() {
-    struct Tampered {
-        device: InProcess<Memory>,
-        answers: Receiver,
-        session: SessionNumber,
-    }
-    impl Read for Tampered {
-        fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
-            let length = self.device.read(bytes)?;
-            for &byte in &bytes[..length] {
-                if let Some(Ok(frame)) = self.answers.push(byte, NO_SESSION)
-                    && let Ok(Message::Answer { answer: Answer::Info(info), .. }) =
-                        postcard::from_bytes(frame.content)
-                {
-                    self.session = info.session;
-                }
-            }
-            Ok(length)
-        }
-    }
-    impl Write for Tampered {
-        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            // An upload is given another mass, in a frame that is whole.
-            let mut receiver = Receiver::new();
-            for &byte in bytes {
-                if let Some(Ok(frame)) = receiver.push(byte, self.session)
-                    && let Ok(Request::Upload { place, mut upload }) =
-                        postcard::from_bytes(frame.content)
-                {
-                    upload.muscle.mass *= 1.000_001;
-                    let request = Request::Upload { place, upload };
-                    let frame = encode(frame.session, frame.sequence, &request);
-                    self.device.write_all(&frame.expect("a frame"))?;
-                    return Ok(bytes.len());
-                }
-            }
-            self.device.write(bytes)
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
-    let muscle =
-        muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
-    let trace = trace::read_inputs(&data("vectors/fes_steps.csv")).expect("inputs");
-    let mut host = Client::new(Tampered {
-        device: InProcess::boot(Memory::new()),
-        answers: Receiver::new(),
-        session: NO_SESSION,
-    });
-    let played = hil::play(&mut host, &muscle, Mode::Fes, &trace, &mut |_| ());
-    assert!(matches!(played, Err(HilError::Differs(_))), "{played:?}");
-}
 
 #[test]
 fn an_activation_becomes_pulses_once_somebody_has_armed() {
@@ -125,7 +41,7 @@ fn an_activation_becomes_pulses_once_somebody_has_armed() {
     arm(&mut host, Fault::Boot);
     for first in (8..1600).step_by(8) {
         while let Err(error) = host.order(&rows(first, 8)) {
-            assert!(matches!(error, HilError::Refused { no_room: true, .. }), "{error}");
+            assert!(matches!(error, ClientError::Refused { no_room: true, .. }), "{error:?}");
         }
         // A sensor has noise.
         let path_um = Some(160_000 + i32::try_from(first / 8 % 2).expect("0 or 1"));
@@ -154,7 +70,7 @@ fn an_activation_becomes_pulses_once_somebody_has_armed() {
 fn what_is_refused_is_named_and_changes_nothing() {
     let mut host = booted();
     let mut refused = |request: &Request| match host.ask(request) {
-        Err(HilError::Refused { reason, .. }) => reason,
+        Err(ClientError::Refused { reason, .. }) => reason,
         other => panic!("{request:?}: {other:?}"),
     };
     let mut upload = fes();
@@ -187,20 +103,20 @@ fn what_is_refused_is_named_and_changes_nothing() {
         })),
         "slope = 0.5: must be between 1 and 10"
     );
-    assert_eq!(refused(&Request::State { place: 0 }), "no muscle is at that place");
+    assert_eq!(refused(&Request::State { place: 0 }), "Empty");
     assert_eq!(refused(&Request::Arm), "NotAcknowledged");
     let rows = heapless::Vec::from_slice(&[[RowInputs::default(); MUSCLES]]).expect("room");
     assert_eq!(refused(&Request::Rows { first: 1, rows }), "first = 1: must be 0 to 0");
     host.order(&Request::Upload { place: 0, upload: fes() }).expect("a muscle");
     let rest = host.ask(&Request::Rest([Some(0.5), None]));
-    let Err(HilError::Refused { reason, .. }) = rest else { panic!("{rest:?}") };
+    let Err(ClientError::Refused { reason, .. }) = rest else { panic!("{rest:?}") };
     assert!(reason.starts_with("path_length = 0.5: must be between 0.0"), "{reason}");
     // A device that is armed keeps its muscles.
     arm(&mut host, Fault::Boot);
     for request in [Request::Upload { place: 0, upload: fes() }, Request::Rest([None; MUSCLES])] {
         let answer = host.ask(&request);
         assert!(
-            matches!(&answer, Err(HilError::Refused { reason, .. }) if reason == "stimulation is armed"),
+            matches!(&answer, Err(ClientError::Refused { reason, .. }) if reason == "Armed"),
             "{answer:?}"
         );
     }
@@ -213,14 +129,14 @@ fn what_is_refused_is_named_and_changes_nothing() {
 fn what_is_asked_of_supervision_is_answered_by_it() {
     let mut host = booted();
     let mut not_armed = |request: &Request| match host.ask(request) {
-        Err(HilError::Refused { reason, .. }) => reason,
+        Err(ClientError::Refused { reason, .. }) => reason,
         other => panic!("{request:?}: {other:?}"),
     };
     let other = format!("{:?}", NotArmed::OtherFault);
     assert_eq!(not_armed(&Request::Acknowledge(Fault::Supply)), other);
     host.order(&Request::Acknowledge(Fault::Boot)).expect("its name");
     // No sensor has said anything yet.
-    let Err(HilError::Refused { reason, .. }) = host.ask(&Request::Arm) else { panic!("armed") };
+    let Err(ClientError::Refused { reason, .. }) = host.ask(&Request::Arm) else { panic!("armed") };
     assert_eq!(reason, format!("{:?}", NotArmed::StillThere(Fault::Supply)));
     arm(&mut host, Fault::Boot);
     // More than is allowed latches; the fault is named by whoever asks.

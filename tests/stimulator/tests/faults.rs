@@ -6,7 +6,7 @@ use firmware::{Controller, Gate, Plan, Pulses, Stimulus};
 use heapless::spsc::Queue;
 use std::collections::HashSet;
 use std::path::Path;
-use system_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
+use stimulator_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
 
 type Request = [Option<Stimulus>; CHANNELS];
 
@@ -267,7 +267,7 @@ fn every_fault_ends_in_neutral_and_is_in_the_table() {
     );
     cases.iter().for_each(|case| table.push_str(&row(case)));
 
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/README.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware/README.md");
     let text = std::fs::read_to_string(&path).expect("the firmware's README");
     let (before, rest) = text.split_once("<!-- faults -->").expect("a place for the table");
     let (_, after) = rest.split_once("<!-- end of faults -->").expect("a place for the table");

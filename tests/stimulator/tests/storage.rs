@@ -5,8 +5,8 @@ use embedded_storage::nor_flash::{
 };
 use firmware::link::{Mode, Request, Upload};
 use firmware::{MOST_STORED, MUSCLE, NotStored, RamFlash, Slots};
-use host_sim::hil::Client;
-use system_tests::device::InProcess;
+use stimulator_tests::client::Client;
+use stimulator_tests::device::InProcess;
 
 const BYTES: usize = 8192;
 
@@ -159,7 +159,7 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
         host.order(&Request::Rest([Some(0.16), None])).expect("rest");
         host.order(&Request::Rows { first: 0, rows }).expect("room");
         (0..20).for_each(|_| host.line().tick());
-        host.listen().expect("a line");
+        host.listen();
         std::iter::from_fn(|| host.next_trace()).last().expect("traces").outputs[0].force
     };
     let mut host = Client::new(InProcess::boot(RamFlash::<BYTES>::new()));

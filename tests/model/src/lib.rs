@@ -1,0 +1,3 @@
+//! Tests of the model that need no reference live in `tests/model/tests`: they build without `host-sim`.
+
+pub mod muscles;
