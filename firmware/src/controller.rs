@@ -1,42 +1,45 @@
 //! The half of the stimulator that the tick drives: supervision, and what may be put out until the next one.
 
 use crate::gate::Gate;
+use crate::guarded::Guarded;
+use crate::limits::{LimitError, Limits};
 use crate::plan::Plan;
-use crate::safety::{CHANNELS, Fault, Limits, NotArmed, Observed, State, Supervisor};
-use crate::stimulus::{Scale, Stimulus};
+use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
+use crate::stimulus::Scale;
 use heapless::spsc::Producer;
 
 /// A supervised stimulator.
 pub struct Controller<'q> {
     supervisor: Supervisor,
-    scale: Scale,
-    plans: Producer<'q, Plan<CHANNELS>>,
+    scale: Guarded<Scale>,
+    plans: Producer<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
     /// What the pulse timer has last been told.
     told: Plan<CHANNELS>,
 }
 
 impl<'q> Controller<'q> {
-    /// Off, with a fault of [`Supervisor::new`] to be acknowledged; for a tick of so many µs.
+    /// Off, with a fault of [`Supervisor::new`] to be acknowledged; for a tick of so many µs. Refused if the limits
+    /// are not those of a stimulator of that tick and scale: see [`Limits::validate`].
     pub fn new(
         limits: Limits,
         tick_us: u32,
         boot: Fault,
         scale: Scale,
-        plans: Producer<'q, Plan<CHANNELS>>,
+        plans: Producer<'q, Guarded<Plan<CHANNELS>>>,
         gate: &'q Gate,
-    ) -> Self {
-        Self {
-            supervisor: Supervisor::new(limits, tick_us, boot),
-            scale,
+    ) -> Result<Self, LimitError> {
+        Ok(Self {
+            supervisor: Supervisor::new(limits, tick_us, &scale, boot)?,
+            scale: Guarded::new(scale),
             plans,
             gate,
             told: Plan::NOTHING,
-        }
+        })
     }
 
-    /// What supervision allows.
-    pub fn limits(&self) -> &Limits {
+    /// What supervision allows; none once memory has lost a bit of it.
+    pub fn limits(&self) -> Option<&Limits> {
         self.supervisor.limits()
     }
 
@@ -59,6 +62,7 @@ impl<'q> Controller<'q> {
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         self.supervisor.acknowledge(seen)?;
         self.gate.set_late(false);
+        self.gate.set_plan_lost(false);
         Ok(())
     }
 
@@ -77,26 +81,22 @@ impl<'q> Controller<'q> {
     /// The hard tick. Where stimulation is not allowed it returns false, and the pulse timer's interrupt is to be
     /// called for: everything is neutral when that has passed.
     #[must_use]
-    pub fn tick(&mut self, observed: &Observed, requested: &[Option<Stimulus>; CHANNELS]) -> bool {
+    pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
+        let scale = self.scale.get().copied();
         let observed = Observed {
             in_time: observed.in_time && !self.gate.is_late(),
             output_answers: observed.output_answers && !self.gate.output_failed(),
+            memory_is_intact: observed.memory_is_intact
+                && !self.gate.is_plan_lost()
+                && scale.is_some(),
             ..*observed
         };
-        let allowed = self.supervisor.tick(&observed, requested);
+        self.supervisor.tick(&observed, requested);
         if self.state() == State::Armed {
             // Before there is a plan: a pulse timer that finds the gate shut throws away what it was told.
             self.gate.renew();
             self.gate.set_open(true);
-            match Plan::new(&allowed, &self.scale) {
-                Err(_) => self.supervisor.fail(Fault::Request),
-                Ok(plan) if plan == self.told => (),
-                // The pulse timer takes several in a tick; it has stopped if there is no room.
-                Ok(plan) if self.plans.enqueue(plan).is_err() => {
-                    self.supervisor.fail(Fault::Output);
-                }
-                Ok(plan) => self.told = plan,
-            }
+            self.tell(requested, scale);
         }
         let armed = self.state() == State::Armed;
         if !armed {
@@ -105,5 +105,21 @@ impl<'q> Controller<'q> {
             self.gate.set_open(false);
         }
         armed
+    }
+
+    /// Tells the pulse timer what is wanted, if that is something else than before.
+    fn tell(&mut self, requested: &Requested, scale: Option<Scale>) {
+        let (Some(scale), Some(limits)) = (scale, self.supervisor.limits()) else {
+            return self.supervisor.fail(Fault::Checksum);
+        };
+        match Plan::new(&requested.stimuli, &scale, limits.rise_ua) {
+            Err(_) => self.supervisor.fail(Fault::Request),
+            Ok(plan) if plan == self.told => (),
+            // The pulse timer takes several in a tick; it has stopped if there is no room.
+            Ok(plan) if self.plans.enqueue(Guarded::new(plan)).is_err() => {
+                self.supervisor.fail(Fault::Output);
+            }
+            Ok(plan) => self.told = plan,
+        }
     }
 }

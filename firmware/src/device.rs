@@ -2,12 +2,15 @@
 
 use crate::controller::Controller;
 use crate::deadline::Deadline;
-use crate::driven::Driven;
+use crate::driven::{Demand, Driven};
+use crate::guarded::{Guarded, Sum};
+use crate::limits::{LONGEST_TICK_US, Limits, SHORTEST_TICK_US};
 use crate::link::{MOST_WORDS, Readings, Report, RowInputs, RowOutputs, Traced};
-use crate::safety::{CHANNELS, Fault, NotArmed, Observed};
+use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested};
 use crate::stimulus::Stimulus;
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
+use vm_nostd::Checksum;
 
 /// Time between ticks of the firmware, µs: 500 to 2,000. 1,000, or what `VM_TICK_US` says when it is built; what is
 /// no such number does not build.
@@ -18,7 +21,10 @@ pub const TICK_US: u32 = match option_env!("VM_TICK_US") {
         Err(_) => panic!("VM_TICK_US: must be a whole number"),
     },
 };
-const _: () = assert!(TICK_US >= 500 && TICK_US <= 2000, "VM_TICK_US: must be 500 to 2000");
+const _: () = assert!(
+    TICK_US >= SHORTEST_TICK_US && TICK_US <= LONGEST_TICK_US,
+    "VM_TICK_US: must be 500 to 2000"
+);
 
 /// Muscles of a device.
 pub const MUSCLES: usize = 2;
@@ -37,7 +43,7 @@ pub(crate) enum Order {
     Load(usize, Driven),
     /// All muscles of places that have one, at rest; rows count from 0.
     Rest([Option<Driven>; MUSCLES]),
-    Drive([Option<Stimulus>; CHANNELS]),
+    Drive(Guarded<Stimuli>),
     Readings(Readings),
     Acknowledge(Fault),
     Arm,
@@ -59,11 +65,22 @@ pub(crate) enum Outcome {
 /// Inputs of each muscle in a tick.
 pub(crate) type Row = [RowInputs; MUSCLES];
 
+/// What is asked of each channel.
+pub(crate) type Stimuli = [Option<Stimulus>; CHANNELS];
+
+impl Sum for RowInputs {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { activation, path_length, stimulation_frequency } = *self;
+        let words = [activation, path_length, stimulation_frequency].map(f32::to_bits);
+        words.into_iter().for_each(|word| checksum.add(word));
+    }
+}
+
 /// Everything that goes between tick and link; neither ever waits for the other.
 pub struct Lines {
     orders: Queue<Order, 2>,
     outcomes: Queue<Outcome, 2>,
-    rows: Queue<Row, WAITING>,
+    rows: Queue<Guarded<Row>, WAITING>,
     traces: Queue<Traced, WAITING>,
 }
 
@@ -111,7 +128,7 @@ impl Lines {
 pub struct TickEnds<'q> {
     orders: Consumer<'q, Order>,
     outcomes: Producer<'q, Outcome>,
-    rows: Consumer<'q, Row>,
+    rows: Consumer<'q, Guarded<Row>>,
     traces: Producer<'q, Traced>,
 }
 
@@ -119,9 +136,29 @@ pub struct TickEnds<'q> {
 pub struct LinkEnds<'q> {
     pub(crate) orders: Producer<'q, Order>,
     pub(crate) outcomes: Consumer<'q, Outcome>,
-    pub(crate) rows: Producer<'q, Row>,
+    pub(crate) rows: Producer<'q, Guarded<Row>>,
     pub(crate) traces: Consumer<'q, Traced>,
 }
+
+/// What asks for current, and how long ago it came.
+#[derive(Clone, Copy, Debug)]
+struct Aged<T> {
+    value: Guarded<T>,
+    age_us: u64,
+}
+
+impl<T: Sum> Aged<T> {
+    fn new(value: T) -> Self {
+        Self::of(Guarded::new(value))
+    }
+
+    fn of(value: Guarded<T>) -> Self {
+        Self { value, age_us: 0 }
+    }
+}
+
+const NO_STIMULI: Stimuli = [None; CHANNELS];
+const NO_DEMAND: [Demand; MUSCLES] = [Demand::Nothing; MUSCLES];
 
 /// All that the hard tick owns.
 pub struct Device<'q> {
@@ -129,13 +166,15 @@ pub struct Device<'q> {
     ends: TickEnds<'q>,
     deadline: Deadline,
     muscles: [Option<Driven>; MUSCLES],
-    /// What was asked for by itself.
-    driven: [Option<Stimulus>; CHANNELS],
+    /// What was asked for by itself, of channels that no electrode of a muscle has.
+    drive: Aged<Stimuli>,
     /// What the last row asks for, of channels that electrodes of muscles have.
-    by_rows: [Option<(usize, Option<Stimulus>)>; MUSCLES],
+    demand: Aged<[Demand; MUSCLES]>,
     readings: Readings,
     /// How long ago these came, µs.
-    readings_age_us: u32,
+    readings_age_us: u64,
+    /// A row was not what the link had put into its queue.
+    row_lost: bool,
     was_armed: bool,
     /// The last tick was in time.
     in_time: bool,
@@ -151,10 +190,11 @@ impl<'q> Device<'q> {
             ends,
             deadline,
             muscles: [const { None }; MUSCLES],
-            driven: [None; CHANNELS],
-            by_rows: [None; MUSCLES],
+            drive: Aged::new(NO_STIMULI),
+            demand: Aged::new(NO_DEMAND),
             readings: Readings::default(),
             readings_age_us: 0,
+            row_lost: false,
             was_armed: false,
             in_time: true,
             ticks: 0,
@@ -170,14 +210,24 @@ impl<'q> Device<'q> {
     pub fn tick(&mut self, since_due: u32) -> bool {
         self.deadline.begin(since_due);
         self.ticks = self.ticks.wrapping_add(1);
+        for age_us in [&mut self.drive.age_us, &mut self.demand.age_us, &mut self.readings_age_us] {
+            *age_us = age_us.saturating_add(TICK_US.into());
+        }
         self.obey();
         let mut memory_is_intact = true;
         for driven in self.muscles.iter_mut().flatten() {
             memory_is_intact &= driven.check();
         }
         self.advance();
-        self.readings_age_us = self.readings_age_us.saturating_add(TICK_US);
-        let readings_us = self.controller.limits().readings_ms.saturating_mul(1000);
+        let limits = self.controller.limits().copied();
+        if let Some(limits) = &limits
+            && !self.was_armed
+        {
+            self.expire(limits);
+        }
+        let readings_us = limits.map_or(0, |limits| u64::from(limits.readings_ms) * 1000);
+        let requested = self.requested();
+        memory_is_intact &= requested.is_some() && !core::mem::take(&mut self.row_lost);
         let observed = Observed {
             host_heard: self.controller.take_heard(),
             impedance_ohm: self.readings.impedance_ohm,
@@ -189,9 +239,20 @@ impl<'q> Device<'q> {
             // The controller knows.
             output_answers: true,
         };
-        let armed = self.controller.tick(&observed, &self.requested());
+        let armed = self.controller.tick(&observed, &requested.unwrap_or(Requested::NOTHING));
         self.ended(armed);
         armed
+    }
+
+    /// Forgets what was asked for while nothing could be put out, once it is as old as the limits allow: whoever
+    /// arms is not given what somebody asked for long ago.
+    fn expire(&mut self, limits: &Limits) {
+        if self.drive.age_us > u64::from(limits.drives_ms) * 1000 {
+            self.drive = Aged::new(NO_STIMULI);
+        }
+        if self.demand.age_us > u64::from(limits.rows_ms) * 1000 {
+            self.demand = Aged::new(NO_DEMAND);
+        }
     }
 
     /// Forgets, if it was armed and is not any more.
@@ -201,22 +262,33 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// What is asked for of all channels.
-    fn requested(&self) -> [Option<Stimulus>; CHANNELS] {
-        let mut requested = self.driven;
-        for &(channel, stimulus) in self.by_rows.iter().flatten() {
-            if let Some(place) = requested.get_mut(channel) {
-                *place = stimulus;
+    /// What is asked of all channels; none if memory has lost a bit of it.
+    fn requested(&self) -> Option<Requested> {
+        let drive = self.drive.value.get()?;
+        let demands = self.demand.value.get()?;
+        let mut requested = Requested { stimuli: *drive, ..Requested::NOTHING };
+        if drive.iter().any(Option::is_some) {
+            requested.drive_age_us = self.drive.age_us;
+        }
+        for demand in demands {
+            match *demand {
+                Demand::Nothing => (),
+                Demand::Pulses(channel, stimulus) => {
+                    requested.row_age_us = self.demand.age_us;
+                    // No drive has a channel of an electrode.
+                    *requested.stimuli.get_mut(channel)? = Some(stimulus);
+                }
+                Demand::NotFinite => requested.is_finite = false,
             }
         }
-        requested
+        Some(requested)
     }
 
     /// What was asked for before a fault is not what whoever arms next asks for. Rows that waited are gone, and
     /// missing among the traces by their numbers.
     fn forget(&mut self) {
-        self.driven = [None; CHANNELS];
-        self.by_rows = [None; MUSCLES];
+        self.drive = Aged::new(NO_STIMULI);
+        self.demand = Aged::new(NO_DEMAND);
         while self.ends.rows.dequeue().is_some() {
             self.rows = self.rows.wrapping_add(1);
         }
@@ -251,7 +323,9 @@ impl<'q> Device<'q> {
                 if let Some(muscle) = self.muscles.get_mut(place) {
                     *muscle = Some(driven);
                 }
-                self.by_rows = [None; MUSCLES];
+                // Electrodes may have other channels now.
+                self.drive = Aged::new(NO_STIMULI);
+                self.demand = Aged::new(NO_DEMAND);
                 Outcome::Done
             }
             Order::Rest(muscles) => {
@@ -259,11 +333,11 @@ impl<'q> Device<'q> {
                 self.rows = 0;
                 // What waited belongs to the time before.
                 while self.ends.rows.dequeue().is_some() {}
-                self.by_rows = [None; MUSCLES];
+                self.demand = Aged::new(NO_DEMAND);
                 Outcome::Done
             }
             Order::Drive(stimuli) => {
-                self.driven = stimuli;
+                self.drive = Aged::of(stimuli);
                 Outcome::Done
             }
             Order::Readings(readings) => {
@@ -295,19 +369,24 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// Steps the muscles by the next row, if there is one and its outputs can be taken.
+    /// Steps the muscles by the next row, if there is one and its outputs can be taken. A row of which memory has
+    /// lost a bit steps nothing.
     fn advance(&mut self) {
         if !self.ends.traces.ready() {
             return;
         }
         let Some(row) = self.ends.rows.dequeue() else { return };
         let mut outputs = [RowOutputs::default(); MUSCLES];
-        let places = self.muscles.iter_mut().zip(&row).zip(&mut outputs).zip(&mut self.by_rows);
-        for (((muscle, inputs), output), by_row) in places {
+        let mut demands = NO_DEMAND;
+        self.row_lost = row.get().is_none();
+        let inputs = row.get().into_iter().flatten();
+        let places = self.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
+        for (((muscle, inputs), output), demand) in places {
             let Some(driven) = muscle else { continue };
             *output = driven.step(inputs);
-            *by_row = driven.stimulus(inputs);
+            *demand = driven.demand(inputs);
         }
+        self.demand = Aged::new(demands);
         let _there_is_room = self.ends.traces.enqueue(Traced { row: self.rows, outputs });
         self.rows = self.rows.wrapping_add(1);
     }

@@ -1,6 +1,7 @@
 //! A muscle in its place: what it is, where it is, and what stimulates it.
 
 use crate::device::TYPES;
+use crate::guarded::Sum;
 use crate::link::{Electrode, MOST_WORDS, Mode, Refusal, RowInputs, RowOutputs, Upload};
 use crate::safety::CHANNELS;
 use crate::stimulus::{Stimulus, within};
@@ -12,6 +13,31 @@ use vm_nostd::{
 
 const _: () = assert!(State::<f32, NaturalContinuous, TYPES>::WORDS <= MOST_WORDS);
 const _: () = assert!(State::<f32, IntramuscularFes, TYPES>::WORDS <= MOST_WORDS);
+
+/// What a row asks of a muscle's electrode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Demand {
+    /// No pulses.
+    Nothing,
+    /// Pulses on a channel.
+    Pulses(usize, Stimulus),
+    /// An activation or a frequency that is infinite or not a number, which is a fault.
+    NotFinite,
+}
+
+impl Sum for Demand {
+    fn sum(&self, checksum: &mut Checksum) {
+        match self {
+            Self::Nothing => checksum.add(0),
+            Self::Pulses(channel, stimulus) => {
+                // Channels are few.
+                checksum.add(1 + *channel as u32);
+                stimulus.sum(checksum);
+            }
+            Self::NotFinite => checksum.add(u32::MAX),
+        }
+    }
+}
 
 /// A muscle with its state, what stimulates it, and checksums of all of it as they were left.
 #[derive(Clone, Debug)]
@@ -86,13 +112,28 @@ impl Driven {
         }
     }
 
-    /// The channel that stimulates it, and the pulses that an input asks of it: of the amplitude that recruits
-    /// as much as the input says, at its frequency.
-    pub(crate) fn stimulus(&self, inputs: &RowInputs) -> Option<(usize, Option<Stimulus>)> {
-        let (electrode, curve) = self.electrode.as_ref().filter(|_| !self.lost)?;
-        let (milliamperes, _) = curve.amplitude_for(inputs.activation, electrode.width_us.into());
-        // Saturating, and 0 for what is no number.
-        let frequency_tenths_pps = (inputs.stimulation_frequency * 10.0) as u16;
+    /// The channel that stimulates it, if any.
+    pub(crate) fn channel(&self) -> Option<u8> {
+        self.electrode.as_ref().map(|(electrode, _)| electrode.channel)
+    }
+
+    /// What an input asks of the electrode: pulses of the amplitude that recruits as much as the input says, at its
+    /// frequency.
+    pub(crate) fn demand(&self, inputs: &RowInputs) -> Demand {
+        let Some((electrode, curve)) = self.electrode.as_ref().filter(|_| !self.lost) else {
+            return Demand::Nothing;
+        };
+        let RowInputs { activation, stimulation_frequency, .. } = *inputs;
+        if !activation.is_finite() || !stimulation_frequency.is_finite() {
+            return Demand::NotFinite;
+        }
+        let (milliamperes, _) = curve.amplitude_for(activation, electrode.width_us.into());
+        // Saturating.
+        let frequency_tenths_pps = (stimulation_frequency * 10.0) as u16;
+        // Below a pulse a second there are none.
+        if activation <= 0.0 || frequency_tenths_pps < 10 {
+            return Demand::Nothing;
+        }
         let stimulus = Stimulus {
             amplitude_ua: (milliamperes * 1000.0) as u32,
             width_us: electrode.width_us,
@@ -100,9 +141,7 @@ impl Driven {
             frequency_tenths_pps,
             recovery: electrode.recovery,
         };
-        // Below a pulse a second there are none.
-        let stimulates = inputs.activation > 0.0 && frequency_tenths_pps >= 10;
-        Some((electrode.channel.into(), stimulates.then_some(stimulus)))
+        Demand::Pulses(electrode.channel.into(), stimulus)
     }
 
     /// All words of the state.

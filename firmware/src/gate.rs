@@ -14,6 +14,8 @@ pub struct Gate {
     output_failed: AtomicBool,
     /// The pulse timer did not hear of the tick for too long, or its own interrupt came too late.
     late: AtomicBool,
+    /// Memory has changed a plan on its way to the pulse timer, or there.
+    plan_lost: AtomicBool,
     /// The link has acted upon a frame of the host's.
     heard: AtomicBool,
 }
@@ -27,6 +29,7 @@ impl Gate {
             renewed: no(false),
             output_failed: no(false),
             late: no(false),
+            plan_lost: no(false),
             heard: no(false),
         }
     }
@@ -76,5 +79,13 @@ impl Gate {
 
     pub(crate) fn is_late(&self) -> bool {
         self.late.load(Relaxed)
+    }
+
+    pub(crate) fn set_plan_lost(&self, lost: bool) {
+        self.plan_lost.store(lost, Relaxed);
+    }
+
+    pub(crate) fn is_plan_lost(&self) -> bool {
+        self.plan_lost.load(Relaxed)
     }
 }

@@ -9,13 +9,19 @@
 //! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues of [`Lines`].
 #![no_std]
 
+#[cfg(test)]
+extern crate std;
+
 mod controller;
 mod deadline;
 mod device;
 mod driven;
 #[cfg(feature = "board")]
 pub mod end;
+mod fault;
 mod gate;
+mod guarded;
+mod limits;
 pub mod link;
 mod output;
 mod plan;
@@ -34,8 +40,10 @@ pub use controller::Controller;
 pub use deadline::Deadline;
 pub use device::{Device, Lines, LinkEnds, MUSCLES, TICK_US, TYPES, TickEnds};
 pub use gate::Gate;
+pub use guarded::{Guarded, Sum};
+pub use limits::{LimitError, Limits};
 pub use output::{Bridge, OutputError, OutputStage};
-pub use plan::Plan;
+pub use plan::{Plan, PlanQueue};
 pub use pulses::Pulses;
 pub use ram::RamFlash;
 pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};

@@ -18,10 +18,16 @@ mod app {
         ToHost, Watchdog, pac,
     };
     use defmt_rtt as _;
-    use firmware::safety::{CHANNELS, Fault, Limits};
-    use firmware::{Controller, Deadline, Device, Gate, Lines, Plan, Pulses, Server, TICK_US};
+    use firmware::safety::Fault;
+    use firmware::{
+        Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, TICK_US,
+    };
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
+
+    /// What this board may put out; refused here and not on the patient if it contradicts itself or the board.
+    const LIMITS: Limits = Limits::SURFACE.within_scale(&SCALE);
+    const _: () = assert!(LIMITS.validate(TICK_US, &SCALE).is_ok(), "limits that are none");
 
     /// Bytes that can wait for the link: several of the longest frames.
     const WAITING: usize = 4096;
@@ -46,7 +52,7 @@ mod app {
     /// Outputs are neutral before anything else is done.
     #[init(local = [
         gate: Gate = Gate::new(),
-        plans: Queue<Plan<CHANNELS>, 16> = Queue::new(),
+        plans: PlanQueue = Queue::new(),
         lines: Lines = Lines::new(),
         bytes: Queue<Received, WAITING> = Queue::new(),
     ])]
@@ -69,7 +75,9 @@ mod app {
         let (give_plan, take_plan) = plans.split();
         let (tick_ends, link_ends) = lines.split();
         let (received, arrived) = bytes.split();
-        let controller = Controller::new(Limits::SURFACE, TICK_US, boot, SCALE, give_plan, gate);
+        let Ok(controller) = Controller::new(LIMITS, TICK_US, boot, SCALE, give_plan, gate) else {
+            board::reset()
+        };
         let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
         let server = Server::new(link_ends, gate, memory, step);
         defmt::info!("a tick of {=u32} us", TICK_US);

@@ -1,6 +1,7 @@
 //! The half of the stimulator that the pulse timer drives, above everything else.
 
 use crate::gate::Gate;
+use crate::guarded::Guarded;
 use crate::output::OutputStage;
 use crate::plan::Plan;
 use crate::safety::CHANNELS;
@@ -13,7 +14,7 @@ use heapless::spsc::Consumer;
 pub struct Pulses<'q, D, P> {
     stage: OutputStage<D, P, CHANNELS>,
     schedule: Schedule<CHANNELS>,
-    plans: Consumer<'q, Plan<CHANNELS>>,
+    plans: Consumer<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
     /// For how long a tick's permission holds, µs.
     patience_us: u32,
@@ -41,7 +42,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     /// Takes over the output stage, in neutral, for a tick of so many µs.
     pub fn new(
         stage: OutputStage<D, P, CHANNELS>,
-        plans: Consumer<'q, Plan<CHANNELS>>,
+        plans: Consumer<'q, Guarded<Plan<CHANNELS>>>,
         gate: &'q Gate,
         tick_us: u32,
     ) -> Self {
@@ -66,8 +67,16 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     ///
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
-        // Shut: the step that was foreseen does not begin.
-        if !self.gate.is_open() {
+        self.age_us = self.age_us.saturating_add(self.next.duration_us);
+        if self.gate.take_renewed() {
+            self.age_us = 0;
+        }
+        // Before the step begins: a phase that may not end as it should does not begin.
+        let is_overdue = self.age_us > self.patience_us && !self.schedule.is_idle();
+        if is_overdue {
+            self.gate.set_late(true);
+        }
+        if is_overdue || !self.gate.is_open() {
             self.halt();
         }
         let step = self.next;
@@ -76,22 +85,26 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             self.fail();
         }
         self.flow_off(&step);
-        self.age_us = self.age_us.saturating_add(step.duration_us);
-        if self.gate.take_renewed() {
-            self.age_us = 0;
-        }
-        // Plans are long to read: not while a phase is being timed.
+        // Plans are long to read, and to sum: not while a phase is being timed.
         if step.output.is_none() {
-            while let Some(plan) = self.plans.dequeue() {
-                self.schedule.follow(&plan);
-            }
-        }
-        if self.age_us > self.patience_us && !self.schedule.is_idle() {
-            self.gate.set_late(true);
-            self.halt();
+            self.read_plans();
         }
         self.next = self.schedule.advance();
         self.next.duration_us
+    }
+
+    /// Follows the plans that wait. What memory has changed puts nothing out.
+    fn read_plans(&mut self) {
+        while let Some(plan) = self.plans.dequeue() {
+            self.schedule.follow(&plan);
+            if !self.schedule.is_intact() {
+                break;
+            }
+        }
+        if !self.schedule.is_intact() {
+            self.gate.set_plan_lost(true);
+            self.halt();
+        }
     }
 
     /// The tick has something to say that cannot wait.
@@ -132,7 +145,8 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     /// No current, and nothing comes after it.
     fn halt(&mut self) {
         self.schedule.halt();
-        self.next = Step::IDLE;
+        // The timer counts what it was told, whatever is put out.
+        self.next.output = None;
         while self.plans.dequeue().is_some() {}
         if self.stage.is_connected() {
             self.discharge_us = Some(DISCHARGE_US);

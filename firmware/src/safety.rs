@@ -3,127 +3,16 @@
 //!
 //! Everything is off at boot. A fault latches: somebody has to name it ([`Supervisor::acknowledge`]), and then arm
 //! ([`Supervisor::arm`]) within ten seconds and with the cause gone.
-//!
-//! What shaped the limits: IEC 60601-2-10:2012, for stimulators in physical medicine, allows into 500 Ω at most
-//! 300 mJ per pulse and, up to 400 Hz, 50 mA r.m.s.; and asks for particular care above 2 mA r.m.s. per cm² of
-//! electrode. This is no claim of conformity, which nobody can make for a module; and equipment with implanted
-//! electrodes, as in intramuscular FES, is outside of that standard: its limits come from the charge per phase
-//! that the electrode in question bears.
 
-use crate::stimulus::Stimulus;
+pub use crate::fault::Fault;
+use crate::guarded::Guarded;
+use crate::limits::LimitError;
+use crate::limits::Limits;
+use crate::stimulus::{Scale, Stimulus};
 use serde::{Deserialize, Serialize};
 
 /// Channels that are supervised together.
 pub const CHANNELS: usize = 4;
-
-/// What is allowed; everything else is a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Amplitude, µA.
-    pub amplitude_ua: u32,
-    /// Width of the phase that stimulates, µs.
-    pub width_us: u16,
-    /// Pulses in ten seconds.
-    pub frequency_tenths_pps: u16,
-    /// Charge of a phase, nC.
-    pub charge_nc: u32,
-    /// Root of the mean square of a channel's current, µA.
-    pub rms_ua: u32,
-    /// How much an amplitude may rise from pulse to pulse, µA. Faster demands are slowed down, and are no fault.
-    pub rise_ua: u32,
-    /// Stimulation since the last arming, ms.
-    pub session_ms: u32,
-    /// Longest silence of the host, ms.
-    pub silence_ms: u32,
-    /// For how long a path length that was read is one, ms.
-    pub readings_ms: u32,
-    /// Of each electrode that stimulates and was measured, Ω: below is a short, above an electrode that has come
-    /// off. Measuring takes pulses, so that one that was not measured yet is let pass.
-    pub impedance_ohm: (u32, u32),
-    /// mV.
-    pub supply_mv: (u32, u32),
-    /// Path length of the muscle, µm.
-    pub path_um: (i32, i32),
-    /// How fast that may move, mm/s.
-    pub path_speed_mm_s: u32,
-    /// How long that may stay the same to the µm, ms of stimulation: a sensor has noise.
-    pub stuck_ms: u32,
-}
-
-impl Limits {
-    /// For surface electrodes of 25 cm² and adults: 20 mA r.m.s. are 0.8 mA/cm², and 40 µC at 100 mA no more than
-    /// 4 mJ in 500 Ω, both phases.
-    pub const SURFACE: Self = Self {
-        amplitude_ua: 100_000,
-        width_us: 500,
-        frequency_tenths_pps: 1000,
-        charge_nc: 40_000,
-        rms_ua: 20_000,
-        rise_ua: 2_000,
-        session_ms: 30 * 60 * 1000,
-        silence_ms: 100,
-        readings_ms: 200,
-        impedance_ohm: (100, 5_000),
-        supply_mv: (3_000, 4_300),
-        path_um: (50_000, 500_000),
-        path_speed_mm_s: 1_000,
-        stuck_ms: 2_000,
-    };
-}
-
-/// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Fault {
-    /// Nothing yet: this is how everything starts.
-    Boot,
-    /// An amplitude beyond its limit was asked for.
-    Amplitude,
-    /// A width.
-    Width,
-    /// A frequency.
-    Frequency,
-    /// A charge per phase.
-    Charge,
-    /// A mean square of current.
-    RootMeanSquare,
-    /// Stimulation has lasted as long as it may.
-    Session,
-    /// The host was silent for too long.
-    Silence,
-    /// An electrode is shorted.
-    ElectrodeShort,
-    /// An electrode has come off.
-    ElectrodeOpen,
-    /// The supply is out of its range.
-    Supply,
-    /// The sensor gives no number.
-    SensorMissing,
-    /// The sensor's number is out of its range.
-    SensorRange,
-    /// It jumped.
-    SensorJump,
-    /// It is stuck.
-    SensorStuck,
-    /// The tick before was late or did not finish.
-    Deadline,
-    /// The watchdog had to restart the controller.
-    Watchdog,
-    /// State or parameters are not what the last tick left.
-    Checksum,
-    /// The output stage did not answer.
-    Output,
-    /// A stimulus was asked for that the stimulator cannot do.
-    Request,
-    /// Somebody has stopped it, which is not a fault, and takes the same two steps to go on.
-    Stopped,
-}
-
-impl Fault {
-    /// May have been there for a tick only, and is not to be missed for that: arming looks at the last tick.
-    fn is_of_a_moment(self) -> bool {
-        matches!(self, Self::Checksum | Self::Deadline | Self::Output)
-    }
-}
 
 /// What a tick sees.
 #[derive(Clone, Copy, Debug)]
@@ -142,6 +31,30 @@ pub struct Observed {
     pub memory_is_intact: bool,
     /// The output stage has answered.
     pub output_answers: bool,
+}
+
+/// What a tick is asked to put out, and how old that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Requested {
+    /// Of each channel.
+    pub stimuli: [Option<Stimulus>; CHANNELS],
+    /// Age of the row that a stimulus comes from, µs; 0 if none does.
+    pub row_age_us: u64,
+    /// Age of the drive that a stimulus comes from, µs; 0 if none does.
+    pub drive_age_us: u64,
+    /// Activation and frequency of the rows are finite numbers.
+    pub is_finite: bool,
+}
+
+impl Requested {
+    /// Nothing on any channel.
+    pub const NOTHING: Self =
+        Self { stimuli: [None; CHANNELS], row_age_us: 0, drive_age_us: 0, is_finite: true };
+
+    /// Whether current is asked for.
+    fn stimulates(&self) -> bool {
+        self.stimuli.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0)
+    }
 }
 
 /// Where the two steps of arming are.
@@ -174,45 +87,50 @@ pub enum NotArmed {
 /// From acknowledging to arming, µs.
 const ARMING_US: u32 = 10_000_000;
 
-/// Supervises stimulation.
+/// Supervises stimulation. Times are µs in 64 bits: they do not end.
 #[derive(Clone, Debug)]
 pub struct Supervisor {
-    limits: Limits,
+    limits: Guarded<Limits>,
     tick_us: u32,
     state: State,
     /// What was wrong with the inputs of the last tick, if anything.
     wrong: Option<Fault>,
-    silence_us: u32,
-    session_us: u32,
-    stuck_us: u32,
+    silence_us: u64,
+    /// Of stimulation since the last rest.
+    session_us: u64,
+    /// Without stimulation.
+    rest_us: u64,
+    /// Of stimulation while the reading stayed the same.
+    stuck_us: u64,
     path_before: Option<i32>,
-    /// How far each amplitude has risen, millionths of µA, and with which width.
-    risen: [(u64, u16); CHANNELS],
 }
-
-/// Nothing on any channel.
-const NEUTRAL: [Option<Stimulus>; CHANNELS] = [None; CHANNELS];
 
 impl Supervisor {
     /// Off, as at every boot, and latched: with [`Fault::Boot`], or [`Fault::Watchdog`] if that is why it boots.
-    /// For a tick of so many µs, 500 to 2,000.
-    pub const fn new(limits: Limits, tick_us: u32, boot: Fault) -> Self {
-        Self {
-            limits,
+    /// For a tick of so many µs and a current source of that scale; see [`Limits::validate`] for what is refused.
+    pub fn new(
+        limits: Limits,
+        tick_us: u32,
+        scale: &Scale,
+        boot: Fault,
+    ) -> Result<Self, LimitError> {
+        limits.validate(tick_us, scale)?;
+        Ok(Self {
+            limits: Guarded::new(limits),
             tick_us,
             state: State::Latched(boot),
             wrong: Some(boot),
             silence_us: 0,
             session_us: 0,
+            rest_us: 0,
             stuck_us: 0,
             path_before: None,
-            risen: [(0, 0); CHANNELS],
-        }
+        })
     }
 
-    /// What is allowed.
-    pub fn limits(&self) -> &Limits {
-        &self.limits
+    /// What is allowed; none once memory has lost a bit of it.
+    pub fn limits(&self) -> Option<&Limits> {
+        self.limits.get()
     }
 
     /// Where it is.
@@ -236,117 +154,146 @@ impl Supervisor {
         }
     }
 
-    /// Second step: stimulation may begin, from nothing, if the last tick saw nothing wrong.
+    /// Second step: stimulation may begin, from nothing, if the last tick saw nothing wrong and the session is not
+    /// over. What was put out before still counts.
     pub fn arm(&mut self) -> Result<(), NotArmed> {
         let State::Acknowledged { .. } = self.state else { return Err(NotArmed::NotAcknowledged) };
         if let Some(fault) = self.wrong {
             return Err(NotArmed::StillThere(fault));
         }
+        let Some(limits) = self.limits.get() else {
+            return Err(NotArmed::StillThere(Fault::Checksum));
+        };
+        if self.is_session_over(limits) {
+            return Err(NotArmed::StillThere(Fault::Session));
+        }
         self.state = State::Armed;
-        self.session_us = 0;
-        self.stuck_us = 0;
-        self.risen = [(0, 0); CHANNELS];
         Ok(())
     }
 
-    /// One tick: what of the request may be put out until the next one.
-    pub fn tick(
-        &mut self,
-        observed: &Observed,
-        requested: &[Option<Stimulus>; CHANNELS],
-    ) -> [Option<Stimulus>; CHANNELS] {
-        let stimulates = requested.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0);
-        self.wrong = self.wrong_with(observed, requested, stimulates);
+    /// One tick: whether what is requested may be put out until the next one, all of it, or nothing.
+    pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
+        let stimulates = requested.stimulates();
+        // A limit that memory has lost allows nothing.
+        let limits = self.limits.get().copied();
+        self.wrong = match &limits {
+            Some(limits) => self.wrong_with(limits, observed, requested, stimulates),
+            None => Some(Fault::Checksum),
+        };
         match (self.state, self.wrong) {
             (State::Armed, None) => {
-                let demand = self.wrong_request(requested);
-                if let Some(fault) = demand {
-                    return self.latch(fault);
+                if let Some(limits) = &limits
+                    && let Some(fault) = self.wrong_request(limits, requested)
+                {
+                    self.state = State::Latched(fault);
                 }
-                let stimulated_us = if stimulates { self.tick_us } else { 0 };
-                self.session_us = self.session_us.saturating_add(stimulated_us);
-                self.slowed(requested)
             }
-            (State::Armed, Some(fault)) => self.latch(fault),
+            (State::Armed, Some(fault)) => self.state = State::Latched(fault),
             (State::Acknowledged { fault, .. }, Some(other))
                 if other != fault && other.is_of_a_moment() =>
             {
-                self.latch(other)
+                self.state = State::Latched(other);
             }
-            (State::Acknowledged { left_us: 0, fault }, _) => self.latch(fault),
+            (State::Acknowledged { left_us: 0, fault }, _) => self.state = State::Latched(fault),
             (State::Acknowledged { left_us, fault }, _) => {
                 let left_us = left_us.saturating_sub(self.tick_us);
                 self.state = State::Acknowledged { left_us, fault };
-                NEUTRAL
             }
-            (State::Latched(_), _) => NEUTRAL,
+            (State::Latched(_), _) => (),
         }
+        let is_armed = self.state == State::Armed;
+        self.count_session(limits.as_ref(), is_armed && stimulates);
+        is_armed
+    }
+
+    /// A session goes on through pauses, stops and faults; only a rest ends it.
+    fn count_session(&mut self, limits: Option<&Limits>, stimulates: bool) {
+        let tick_us = u64::from(self.tick_us);
+        if stimulates {
+            self.session_us = self.session_us.saturating_add(tick_us);
+        }
+        count(&mut self.rest_us, !stimulates, self.tick_us);
+        if limits.is_some_and(|limits| self.rest_us >= micros(limits.rest_ms)) {
+            self.session_us = 0;
+        }
+    }
+
+    fn is_session_over(&self, limits: &Limits) -> bool {
+        self.session_us >= micros(limits.session_ms)
     }
 
     /// Latches a fault that somebody else has found, unless one is latched already.
     pub fn fail(&mut self, fault: Fault) {
         if !matches!(self.state, State::Latched(_)) {
-            self.latch(fault);
+            self.state = State::Latched(fault);
         }
-    }
-
-    fn latch(&mut self, fault: Fault) -> [Option<Stimulus>; CHANNELS] {
-        self.state = State::Latched(fault);
-        NEUTRAL
     }
 
     /// What is wrong with what a tick sees; what is worst first.
     fn wrong_with(
         &mut self,
+        limits: &Limits,
         observed: &Observed,
-        requested: &[Option<Stimulus>; CHANNELS],
+        requested: &Requested,
         stimulates: bool,
     ) -> Option<Fault> {
-        let limits = self.limits;
         count(&mut self.silence_us, !observed.host_heard, self.tick_us);
-        let sensor = self.wrong_sensor(observed.path_um, stimulates);
+        let sensor = self.wrong_sensor(limits, observed.path_um, stimulates);
         let faults = [
             (!observed.memory_is_intact).then_some(Fault::Checksum),
             (!observed.output_answers).then_some(Fault::Output),
             (!observed.in_time).then_some(Fault::Deadline),
             outside(observed.supply_mv, limits.supply_mv).map(|_| Fault::Supply),
-            wrong_electrode(observed, requested, limits.impedance_ohm),
+            wrong_electrode(observed, &requested.stimuli, limits.impedance_ohm),
             sensor,
-            (self.silence_us / 1000 > limits.silence_ms).then_some(Fault::Silence),
+            (self.silence_us > micros(limits.silence_ms)).then_some(Fault::Silence),
         ];
         faults.into_iter().flatten().next()
     }
 
-    fn wrong_sensor(&mut self, path_um: Option<i32>, stimulates: bool) -> Option<Fault> {
+    fn wrong_sensor(
+        &mut self,
+        limits: &Limits,
+        path_um: Option<i32>,
+        stimulates: bool,
+    ) -> Option<Fault> {
         let Some(path) = path_um else { return Some(Fault::SensorMissing) };
         // The first number there is moves from nowhere.
         let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
         self.path_before = Some(path);
-        let (least, most) = self.limits.path_um;
+        let (least, most) = limits.path_um;
         // Pauses of stimulation do not count, and do not make a sensor work.
         if moved > 0 || stimulates {
             count(&mut self.stuck_us, moved == 0, self.tick_us);
         }
         // mm/s times µs are thousandths of µm.
-        let most_moved = u64::from(self.limits.path_speed_mm_s) * u64::from(self.tick_us) / 1000;
+        let most_moved = u64::from(limits.path_speed_mm_s) * u64::from(self.tick_us) / 1000;
         if !(least..=most).contains(&path) {
             Some(Fault::SensorRange)
         } else if u64::from(moved) > most_moved {
             Some(Fault::SensorJump)
-        } else if self.stuck_us / 1000 > self.limits.stuck_ms {
+        } else if self.stuck_us > micros(limits.stuck_ms) {
             Some(Fault::SensorStuck)
         } else {
             None
         }
     }
 
-    /// What is wrong with a request, and with how long requests have gone on.
-    fn wrong_request(&self, requested: &[Option<Stimulus>; CHANNELS]) -> Option<Fault> {
-        let limits = &self.limits;
-        if self.session_us / 1000 >= limits.session_ms {
+    /// What is wrong with a request, with its age, and with how long requests have gone on.
+    fn wrong_request(&self, limits: &Limits, requested: &Requested) -> Option<Fault> {
+        if self.is_session_over(limits) {
             return Some(Fault::Session);
         }
-        requested.iter().flatten().find_map(|stimulus| {
+        if requested.row_age_us > micros(limits.rows_ms) {
+            return Some(Fault::StaleRow);
+        }
+        if requested.drive_age_us > micros(limits.drives_ms) {
+            return Some(Fault::StaleDrive);
+        }
+        if !requested.is_finite {
+            return Some(Fault::Request);
+        }
+        requested.stimuli.iter().flatten().find_map(|stimulus| {
             let Stimulus { amplitude_ua, width_us, frequency_tenths_pps, .. } = *stimulus;
             if amplitude_ua > limits.amplitude_ua {
                 Some(Fault::Amplitude)
@@ -363,36 +310,16 @@ impl Supervisor {
             }
         })
     }
-
-    /// The request, with amplitudes that have risen as far as they may.
-    fn slowed(&mut self, requested: &[Option<Stimulus>; CHANNELS]) -> [Option<Stimulus>; CHANNELS] {
-        let mut allowed = *requested;
-        for (stimulus, (risen, width_us)) in allowed.iter_mut().zip(&mut self.risen) {
-            let Some(stimulus) = stimulus else {
-                *risen = 0;
-                continue;
-            };
-            // Charge stimulates: a pulse that becomes wider becomes weaker first.
-            let wider = stimulus.width_us.max(1);
-            if wider > *width_us {
-                *risen = *risen * u64::from(*width_us) / u64::from(wider);
-            }
-            *width_us = wider;
-            // In a tick of t µs there are f t/10^7 pulses, f being in tenths.
-            let rise = u64::from(self.limits.rise_ua)
-                * u64::from(stimulus.frequency_tenths_pps)
-                * u64::from(self.tick_us);
-            *risen = (*risen + rise / 10).min(u64::from(stimulus.amplitude_ua) * 1_000_000);
-            // No more than the amplitude, which has 32 bits.
-            stimulus.amplitude_ua = (*risen / 1_000_000) as u32;
-        }
-        allowed
-    }
 }
 
-/// Counts µs as long as something goes on: half an hour and more fit.
-fn count(total_us: &mut u32, goes_on: bool, tick_us: u32) {
-    *total_us = if goes_on { total_us.saturating_add(tick_us) } else { 0 };
+/// Exact for every limit.
+fn micros(limit_ms: u32) -> u64 {
+    u64::from(limit_ms) * 1000
+}
+
+/// Counts µs as long as something goes on.
+fn count(total_us: &mut u64, goes_on: bool, tick_us: u32) {
+    *total_us = if goes_on { total_us.saturating_add(tick_us.into()) } else { 0 };
 }
 
 /// Below or above a range: false or true.

@@ -3,7 +3,11 @@
 //! Driven by a hardware timer: [`Schedule::advance`] says what to put out and when to be called again. A pulse that
 //! is due while another is running starts when that has ended: it waits for at most one pulse of every other channel.
 //! The one after it is due as if it had not been late, but never closer than half a period.
+//!
+//! An amplitude rises from nothing, and by no more from one pulse of a channel to the next than the plan says. What
+//! counts is what was put out: how often, and how, a host asks makes no difference.
 
+use crate::guarded::Guarded;
 use crate::plan::{Plan, Train};
 use crate::stimulus::LEAST_PHASE_US;
 use crate::waveform::{Phase, Pulse};
@@ -24,13 +28,32 @@ impl Step {
     pub const IDLE: Self = Self { output: None, duration_us: 250 };
 }
 
+/// What a channel has put out, which outlasts every halt: off and on again is no way round a frequency.
 #[derive(Clone, Copy, Debug)]
-struct Channel {
-    /// None while the channel is off; its rhythm goes on, or off and on again would be a way round frequencies.
-    pulse: Option<Pulse>,
-    period_us: u32,
-    /// From now until the next pulse is due, µs; negative once it is.
+struct Rhythm {
+    /// From now until the next pulse may come, µs; negative once it may.
     due_us: i32,
+    /// Counts of the last pulse; none of a channel that has been off since.
+    counts: u16,
+    /// Width of the last pulse, µs.
+    width_us: u16,
+}
+
+impl Rhythm {
+    const NONE: Self = Self { due_us: 0, counts: 0, width_us: 0 };
+
+    /// The most counts of a next pulse of that width. Charge stimulates: a pulse that becomes wider becomes weaker
+    /// first.
+    fn reach(&self, rise: u16, width_us: u16) -> u16 {
+        let counts = if width_us > self.width_us {
+            let charge = u32::from(self.counts) * u32::from(self.width_us);
+            // No more than the counts, for the width is less.
+            (charge / u32::from(width_us)) as u16
+        } else {
+            self.counts
+        };
+        counts.saturating_add(rise)
+    }
 }
 
 /// A pulse on its way.
@@ -47,7 +70,8 @@ struct Running {
 /// The pulses of all channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule<const CHANNELS: usize> {
-    channels: [Option<Channel>; CHANNELS],
+    plan: Guarded<Plan<CHANNELS>>,
+    rhythms: [Rhythm; CHANNELS],
     running: Option<Running>,
     /// A pulse has ended, and nothing is put out for the shortest of steps: there is a time for new plans.
     rests: bool,
@@ -61,36 +85,51 @@ impl<const CHANNELS: usize> Default for Schedule<CHANNELS> {
 
 impl<const CHANNELS: usize> Schedule<CHANNELS> {
     /// No channel does anything.
-    pub const fn new() -> Self {
-        Self { channels: [None; CHANNELS], running: None, rests: false }
-    }
-
-    /// Follows another plan from each channel's next pulse on. A pulse that is running ends as it began.
-    pub fn follow(&mut self, plan: &Plan<CHANNELS>) {
-        for (place, train) in self.channels.iter_mut().zip(&plan.trains) {
-            *place = match *train {
-                None => place.map(|before| Channel { pulse: None, ..before }),
-                Some(Train { pulse, period_us }) => {
-                    // A rhythm goes on; a new one, or one that has been off for long, begins at once.
-                    let due_us = place.map_or(0, |before| {
-                        // Periods are a second at most.
-                        let due_us = before.due_us.min(period_us as i32);
-                        if before.pulse.is_some() { due_us } else { due_us.max(0) }
-                    });
-                    Some(Channel { pulse: Some(pulse), period_us, due_us })
-                }
-            };
+    pub fn new() -> Self {
+        Self {
+            plan: Guarded::new(Plan::NOTHING),
+            rhythms: [Rhythm::NONE; CHANNELS],
+            running: None,
+            rests: false,
         }
     }
 
-    /// Forgets everything, the pulse that is running as well: what is put out next is nothing.
+    /// Follows another plan from each channel's next pulse on. A pulse that is running ends as it began.
+    pub fn follow(&mut self, plan: &Guarded<Plan<CHANNELS>>) {
+        // One that memory has changed stays as it is, and starts nothing.
+        if let (Some(new), Some(old)) = (plan.get(), self.plan.get()) {
+            let trains = new.trains.iter().zip(&old.trains);
+            for (rhythm, (train, before)) in self.rhythms.iter_mut().zip(trains) {
+                match train {
+                    None => rhythm.counts = 0,
+                    // A rhythm goes on; a new one, or one that has been off for long, begins at once.
+                    Some(Train { period_us, .. }) => {
+                        // Periods are ten seconds at most.
+                        let due_us = rhythm.due_us.min(*period_us as i32);
+                        rhythm.due_us = if before.is_some() { due_us } else { due_us.max(0) };
+                    }
+                }
+            }
+        }
+        self.plan = *plan;
+    }
+
+    /// Whether memory holds the plan as it was made.
+    pub fn is_intact(&self) -> bool {
+        self.plan.get().is_some()
+    }
+
+    /// Stops every channel, the pulse that is running as well: what is put out next is nothing.
     pub fn halt(&mut self) {
-        *self = Self::new();
+        self.plan = Guarded::new(Plan::NOTHING);
+        self.rhythms.iter_mut().for_each(|rhythm| rhythm.counts = 0);
+        self.running = None;
+        self.rests = false;
     }
 
     /// Whether nothing will come by itself.
     pub fn is_idle(&self) -> bool {
-        self.running.is_none() && self.channels.iter().flatten().all(|one| one.pulse.is_none())
+        self.running.is_none() && self.plan.get().is_none_or(Plan::is_nothing)
     }
 
     /// What is put out now, and for how long. To be called when the last step has lasted as long as it said.
@@ -109,9 +148,9 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
                 step
             }
         };
-        for channel in self.channels.iter_mut().flatten() {
-            // A step is short, and a pulse is late by less than a second.
-            channel.due_us = channel.due_us.saturating_sub(step.duration_us as i32);
+        for rhythm in &mut self.rhythms {
+            // A step is short.
+            rhythm.due_us = rhythm.due_us.saturating_sub(step.duration_us as i32);
         }
         step
     }
@@ -141,30 +180,31 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
 
     /// The first phase of the pulse that is due first, or nothing until one is.
     fn start(&mut self) -> Step {
-        let mut first: Option<(i32, usize)> = None;
-        for (index, channel) in self.channels.iter().enumerate() {
-            if let Some(Channel { pulse: Some(_), due_us, .. }) = channel
-                && first.is_none_or(|(earliest_us, _)| *due_us < earliest_us)
+        let Some(plan) = self.plan.get() else { return Step::IDLE };
+        let mut first: Option<(usize, &Train, &mut Rhythm)> = None;
+        for (channel, (train, rhythm)) in plan.trains.iter().zip(&mut self.rhythms).enumerate() {
+            if let Some(train) = train
+                && first.as_ref().is_none_or(|(_, _, other)| rhythm.due_us < other.due_us)
             {
-                first = Some((*due_us, index));
+                first = Some((channel, train, rhythm));
             }
         }
         match first {
-            Some((due_us, channel)) if due_us <= 0 => {
-                if let Some(Some(one)) = self.channels.get_mut(channel)
-                    && let Some(pulse) = one.pulse
-                {
-                    // What was late makes up for it in part: two pulses are never closer than half a period.
-                    let period_us = one.period_us as i32;
-                    one.due_us = (one.due_us + period_us).max(period_us / 2);
-                    let left_us = duration(&pulse, 0);
-                    self.running = Some(Running { channel, pulse, phase: 0, left_us });
-                }
+            Some((channel, train, rhythm)) if rhythm.due_us <= 0 => {
+                let pulse = train.pulse(rhythm.reach(plan.rise, train.width_us));
+                // What was late makes up for it in part: two pulses are never closer than half a period.
+                let period_us = train.period_us as i32;
+                rhythm.due_us = (rhythm.due_us + period_us).max(period_us / 2);
+                rhythm.counts = pulse.counts();
+                rhythm.width_us = train.width_us;
+                let left_us = duration(&pulse, 0);
+                self.running = Some(Running { channel, pulse, phase: 0, left_us });
                 self.phase().unwrap_or(Step::IDLE)
             }
             // Not exactly when it is due, if that is very soon: a step has its shortest length.
-            Some((due_us, _)) => {
-                let duration_us = (due_us as u32).clamp(LEAST_PHASE_US, Step::IDLE.duration_us);
+            Some((_, _, rhythm)) => {
+                let due_us = rhythm.due_us.unsigned_abs();
+                let duration_us = due_us.clamp(LEAST_PHASE_US, Step::IDLE.duration_us);
                 Step { output: None, duration_us }
             }
             None => Step::IDLE,

@@ -1,8 +1,9 @@
 //! The device's end of the link: below the tick, in no hurry.
 
-use crate::device::{LinkEnds, MUSCLES, Order, Outcome, Row, TYPES};
+use crate::device::{LinkEnds, MUSCLES, Order, Outcome, Row, Stimuli, TYPES};
 use crate::driven::Driven;
 use crate::gate::Gate;
+use crate::guarded::Guarded;
 use crate::link::{
     Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
     Upload, encode,
@@ -173,7 +174,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
                 return Ok(Some(Answer::Done));
             }
             Request::KeepAlive => return Ok(Some(Answer::Done)),
-            Request::Drive(stimuli) => Order::Drive(stimuli),
+            Request::Drive(stimuli) => self.drive(stimuli)?,
             Request::Readings(readings) => Order::Readings(readings),
             Request::Acknowledge(fault) => Order::Acknowledge(fault),
             Request::Arm => Order::Arm,
@@ -195,6 +196,9 @@ impl<'q, F: NorFlash> Server<'q, F> {
         check_place(place)?;
         let driven = Driven::build(&upload, self.step)?;
         let index = usize::from(place);
+        if let Some(channel) = driven.channel() {
+            self.only_free(channel, Some(index))?;
+        }
         let mut uploads = self.uploads;
         if let Some(slot) = uploads.get_mut(index) {
             *slot = Some(upload);
@@ -207,6 +211,29 @@ impl<'q, F: NorFlash> Server<'q, F> {
             *slot = Some(driven.clone());
         }
         Ok(Order::Load(index, driven))
+    }
+
+    /// Stimuli by themselves are for channels that no electrode of a muscle has.
+    fn drive(&mut self, stimuli: Stimuli) -> Result<Order, Refusal<'static>> {
+        for (channel, stimulus) in (0..).zip(&stimuli) {
+            if stimulus.is_some() {
+                self.only_free(channel, None)?;
+            }
+        }
+        Ok(Order::Drive(Guarded::new(stimuli)))
+    }
+
+    /// Refuses a channel that the electrode of a muscle has, but of the one at place `own`.
+    fn only_free(&self, channel: u8, own: Option<usize>) -> Result<(), Refusal<'static>> {
+        let taken = self.built.iter().enumerate().find(|(place, driven)| {
+            let has = driven.as_ref().and_then(Driven::channel);
+            Some(*place) != own && has == Some(channel)
+        });
+        match taken {
+            // Places are few.
+            Some((place, _)) => Err(Refusal::ChannelTaken { channel, place: place as u8 }),
+            None => Ok(()),
+        }
     }
 
     fn rest(&mut self, paths: &[Option<f32>; MUSCLES]) -> Result<Order, Refusal<'static>> {
@@ -228,7 +255,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
             return Err(Refusal::NoRoom { room: room as u32 });
         }
         for &row in rows {
-            if self.ends.rows.enqueue(row).is_ok() {
+            if self.ends.rows.enqueue(Guarded::new(row)).is_ok() {
                 self.row = self.row.wrapping_add(1);
             }
         }

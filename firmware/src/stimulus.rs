@@ -1,7 +1,9 @@
 //! What a channel is to do, and what a stimulator can.
 
+use crate::guarded::Sum;
 use core::fmt;
 use serde::{Deserialize, Serialize};
+use vm_nostd::Checksum;
 
 /// Shortest phase, µs: the pulse timer's interrupt that begins it sets how long the next one lasts, and has to be
 /// through by then.
@@ -11,6 +13,21 @@ pub const LEAST_PHASE_US: u32 = 20;
 pub(crate) const SETTLE_US: u16 = LEAST_PHASE_US as u16;
 /// Shortest gap, µs: settling, and turning the bridge.
 const LEAST_GAP_US: u32 = 2 * LEAST_PHASE_US;
+/// Widest phase that stimulates, µs.
+pub(crate) const MOST_WIDTH_US: u16 = 1000;
+/// Longest gap, µs.
+const MOST_GAP_US: u32 = 200;
+/// How many times longer the recharge phase may be.
+pub(crate) const MOST_RECOVERY: u8 = 8;
+/// Longest pulse of any legal stimulus, settling included, µs.
+pub(crate) const LONGEST_PULSE_US: u32 = Stimulus {
+    amplitude_ua: 0,
+    width_us: MOST_WIDTH_US,
+    gap_us: MOST_GAP_US as u16,
+    frequency_tenths_pps: 10,
+    recovery: MOST_RECOVERY,
+}
+.duration_us();
 
 /// Pulses of one channel, until it is told otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,6 +51,38 @@ pub struct Scale {
     pub full_scale_ua: u32,
     /// The greatest count: 4095 of a converter of 12 bits.
     pub full_scale_counts: u16,
+}
+
+impl Scale {
+    /// The greatest count; 1 where the scale says none.
+    pub(crate) const fn counts(&self) -> u32 {
+        if self.full_scale_counts == 0 { 1 } else { self.full_scale_counts as u32 }
+    }
+
+    /// Counts of a current (µA), rounded down; those of full scale for any beyond it.
+    pub(crate) fn counts_of(&self, current_ua: u32) -> u16 {
+        // 64 bits: µA times counts may have 35.
+        let current = u64::from(current_ua.min(self.full_scale_ua));
+        // No more than the greatest count.
+        (current * u64::from(self.counts()) / u64::from(self.full_scale_ua.max(1))) as u16
+    }
+}
+
+impl Sum for Scale {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { full_scale_ua, full_scale_counts } = *self;
+        checksum.add(full_scale_ua);
+        checksum.add(full_scale_counts.into());
+    }
+}
+
+impl Sum for Stimulus {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { amplitude_ua, width_us, gap_us, frequency_tenths_pps, recovery } = *self;
+        checksum.add(amplitude_ua);
+        checksum.add(u32::from(width_us) << 16 | u32::from(gap_us));
+        checksum.add(u32::from(frequency_tenths_pps) << 16 | u32::from(recovery));
+    }
 }
 
 /// A stimulus was refused.
@@ -78,10 +127,10 @@ impl Stimulus {
     }
 
     /// From the start of a pulse until another may begin, settling included, µs.
-    pub fn duration_us(&self) -> u32 {
-        let width = u32::from(self.width_us);
-        let settling = 3 * u32::from(SETTLE_US);
-        width + u32::from(self.gap_us) + width * u32::from(self.recovery) + settling
+    pub const fn duration_us(&self) -> u32 {
+        let width = self.width_us as u32;
+        let settling = 3 * SETTLE_US as u32;
+        width + self.gap_us as u32 + width * self.recovery as u32 + settling
     }
 
     /// Whether a stimulator of that scale can do it; the error names the field, its value and the limit it
@@ -95,8 +144,8 @@ impl Stimulus {
 
     /// The same of what does not change from pulse to pulse: width, gap and recovery.
     pub(crate) fn validate_shape(&self) -> Result<(), StimulusError> {
-        within("width_us", self.width_us.into(), LEAST_PHASE_US, 1000)?;
-        within("gap_us", self.gap_us.into(), LEAST_GAP_US, 200)?;
-        within("recovery", self.recovery.into(), 1, 8)
+        within("width_us", self.width_us.into(), LEAST_PHASE_US, MOST_WIDTH_US.into())?;
+        within("gap_us", self.gap_us.into(), LEAST_GAP_US, MOST_GAP_US)?;
+        within("recovery", self.recovery.into(), 1, MOST_RECOVERY.into())
     }
 }

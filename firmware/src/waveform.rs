@@ -41,24 +41,32 @@ impl Pulse {
     /// The pulse of a stimulus: at most its amplitude, and less by under `recovery` counts.
     pub fn new(stimulus: &Stimulus, scale: &Scale) -> Result<Self, StimulusError> {
         stimulus.validate(scale)?;
-        let recovery = u16::from(stimulus.recovery);
-        // 64 bits: µA times counts may have 35.
-        let wanted = u64::from(stimulus.amplitude_ua) * u64::from(scale.full_scale_counts)
-            / u64::from(scale.full_scale_ua.max(1));
-        // No more than full scale, which validation has seen to.
-        let weak = wanted as u16 / recovery;
+        let Stimulus { amplitude_ua, width_us, gap_us, recovery, .. } = *stimulus;
+        Ok(Self::of(scale.counts_of(amplitude_ua), width_us, gap_us, recovery))
+    }
+
+    /// The pulse of at most so many counts, of a shape that was validated.
+    pub(crate) fn of(counts: u16, width_us: u16, gap_us: u16, recovery: u8) -> Self {
+        let recovery = u16::from(recovery.max(1));
+        let weak = counts / recovery;
         let phase = |counts, direction, duration_us| Phase { counts, direction, duration_us };
-        Ok(Self {
+        Self {
             phases: [
                 phase(0, Direction::Cathodic, SETTLE_US),
-                phase(weak * recovery, Direction::Cathodic, stimulus.width_us),
+                phase(weak * recovery, Direction::Cathodic, width_us),
                 // Validation has seen to it that there is as much, and more.
-                phase(0, Direction::Cathodic, stimulus.gap_us.saturating_sub(SETTLE_US)),
+                phase(0, Direction::Cathodic, gap_us.saturating_sub(SETTLE_US)),
                 phase(0, Direction::Anodic, SETTLE_US),
-                phase(weak, Direction::Anodic, stimulus.width_us * recovery),
+                phase(weak, Direction::Anodic, width_us.saturating_mul(recovery)),
                 phase(0, Direction::Anodic, SETTLE_US),
             ],
-        })
+        }
+    }
+
+    /// Counts of the phase that stimulates.
+    pub(crate) fn counts(&self) -> u16 {
+        let [_, stimulating, ..] = self.phases;
+        stimulating.counts
     }
 
     /// Net charge, counts times µs, anodic counted up: 0.

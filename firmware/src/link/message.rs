@@ -32,15 +32,17 @@ pub enum Request {
     /// All muscles at rest on these path lengths (m), by themselves in the middle of their range; rows are counted
     /// from 0 again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
-    /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. A fault, or
-    /// a stop, while armed takes with it the rows that have not had their tick.
+    /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. What a row
+    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault, or a stop,
+    /// while armed takes with it the rows that have not had their tick.
     Rows {
         /// Number of the first.
         first: u32,
         /// Inputs of each tick.
         rows: Vec<[RowInputs; MUSCLES], MOST_ROWS>,
     },
-    /// Stimuli of the channels that no electrode of a muscle has.
+    /// Stimuli of the channels that no electrode of a muscle has. They are put out for
+    /// [`Limits::drives_ms`](crate::Limits::drives_ms) at most: hosts repeat them.
     Drive([Option<Stimulus>; CHANNELS]),
     /// What sensors read, until something else comes.
     Readings(Readings),
@@ -94,7 +96,8 @@ pub struct Electrode {
     pub recovery: u8,
 }
 
-/// Inputs of a muscle in a tick; outside of their ranges they are clipped and flagged.
+/// Inputs of a muscle in a tick; outside of their ranges they are clipped and flagged. For a muscle with an electrode,
+/// an activation or a frequency that is infinite or not a number is [`Fault::Request`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowInputs {
     /// U, 0..1.
@@ -188,6 +191,13 @@ pub enum Refusal<'a> {
     NotStored,
     /// Supervision did not go along.
     NotArmed(NotArmed),
+    /// The electrode of another muscle has that channel.
+    ChannelTaken {
+        /// The channel.
+        channel: u8,
+        /// The place of that muscle.
+        place: u8,
+    },
 }
 
 impl From<ParameterError> for Refusal<'static> {

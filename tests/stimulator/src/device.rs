@@ -2,15 +2,19 @@
 
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use embedded_storage::nor_flash::NorFlash;
-use firmware::safety::{CHANNELS, Fault, Limits};
-use firmware::{Controller, Deadline, Device, Gate, Lines, Plan, Pulses, RamFlash, Server};
-use heapless::spsc::Queue;
+use firmware::safety::Fault;
+use firmware::{
+    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, RamFlash, Server,
+};
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 use vm_nostd::TimeStep;
 
 /// Memory for two slots.
 pub type Memory = RamFlash<8192>;
+/// Of the board that the tests have.
+pub const LIMITS: Limits = Limits::SURFACE.within_scale(&SCALE);
+
 /// A tick, µs; the timer that calls for ticks counts these.
 const TICK: u32 = 1000;
 /// A host that hears nothing for so many ticks is told so.
@@ -35,19 +39,20 @@ pub struct InProcess<F> {
 impl<F: NorFlash> InProcess<F> {
     /// At boot, with what its memory holds.
     pub fn boot(memory: F) -> Self {
-        Self::boot_with(memory, Limits::SURFACE)
+        Self::boot_with(memory, LIMITS)
     }
 
     /// The same with other limits.
     pub fn boot_with(memory: F, limits: Limits) -> Self {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
-        let plans: &'static mut Queue<Plan<CHANNELS>, 16> = Box::leak(Box::default());
+        let plans: &'static mut PlanQueue = Box::leak(Box::default());
         let gate: &'static Gate = Box::leak(Box::default());
         let lines: &'static mut Lines = Box::leak(Box::default());
         let (give, take) = plans.split();
         let (tick_ends, link_ends) = lines.split();
-        let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate);
+        let controller =
+            Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate).expect("valid limits");
         Self {
             server: Server::new(link_ends, gate, memory, TimeStep::MILLISECOND),
             device: Device::new(controller, tick_ends, Deadline::new(TICK, 1)),

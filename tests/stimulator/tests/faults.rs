@@ -1,14 +1,12 @@
 //! Every fault, injected into a stimulator that is giving pulses: how long until no current can flow, what is
 //! latched, and what it takes to arm again.
 
-use firmware::safety::{CHANNELS, Fault, Limits, NotArmed, Observed, State, Supervisor};
-use firmware::{Controller, Gate, Plan, Pulses, Stimulus};
-use heapless::spsc::Queue;
+use firmware::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
+use firmware::{Controller, Gate, Limits, PlanQueue, Pulses, Stimulus};
 use std::collections::HashSet;
 use std::path::Path;
+use stimulator_tests::device::LIMITS as BOARD;
 use stimulator_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
-
-type Request = [Option<Stimulus>; CHANNELS];
 
 /// A tick, µs.
 const TICK: u32 = 1000;
@@ -23,7 +21,7 @@ struct Bench {
     timer: u32,
     step_us: u32,
     /// What observation and request are changed by, if a fault is injected.
-    inject: Option<fn(&mut Observed, &mut Request, u32)>,
+    inject: Option<fn(&mut Observed, &mut Requested, u32)>,
     injected: u32,
     /// The tick is not called.
     hangs: bool,
@@ -33,18 +31,20 @@ fn stimulus(amplitude_ua: u32) -> Stimulus {
     Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 400, recovery: 1 }
 }
 
-/// Long sessions cost time.
-const LIMITS: Limits = Limits { session_ms: 5_000, ..Limits::SURFACE };
+/// Long sessions cost time; and each limit is reached before another one.
+const LIMITS: Limits =
+    Limits { session_ms: 5_000, rest_ms: 600, charge_nc: 20_000, rms_ua: 10_000, ..BOARD };
 
 impl Bench {
     fn new(boot: Fault) -> Self {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
-        let queue: &'static mut Queue<Plan<CHANNELS>, 16> = Box::leak(Box::default());
+        let queue: &'static mut PlanQueue = Box::leak(Box::default());
         let gate: &'static Gate = Box::leak(Box::default());
         let (give, take) = queue.split();
         Self {
-            controller: Controller::new(LIMITS, TICK, boot, SCALE, give, gate),
+            controller: Controller::new(LIMITS, TICK, boot, SCALE, give, gate)
+                .expect("valid limits"),
             pulses: Pulses::new(stage, take, gate, TICK),
             electrodes,
             tick: 0,
@@ -99,7 +99,10 @@ impl Bench {
             memory_is_intact: true,
             output_answers: true,
         };
-        let mut request = [Some(stimulus(20_000)), Some(stimulus(20_000)), None, None];
+        let mut request = Requested {
+            stimuli: [Some(stimulus(20_000)), Some(stimulus(20_000)), None, None],
+            ..Requested::NOTHING
+        };
         if let Some(inject) = self.inject {
             inject(&mut observed, &mut request, self.tick - self.injected);
         }
@@ -149,7 +152,7 @@ struct Case {
     fault: Fault,
     how: &'static str,
     most_ms: u32,
-    inject: fn(&mut Observed, &mut Request, u32),
+    inject: fn(&mut Observed, &mut Requested, u32),
 }
 
 macro_rules! case {
@@ -160,19 +163,20 @@ macro_rules! case {
 
 fn cases() -> Vec<Case> {
     vec![
-        case!(Amplitude, "100.001 mA asked for", 1, |_, r, _| r[1] = Some(stimulus(100_001))),
-        case!(Width, "501 µs asked for", 1, |_, r, _| r[1] =
+        case!(Amplitude, "50.001 mA asked for", 1, |_, r, _| r.stimuli[1] = Some(stimulus(50_001))),
+        case!(Width, "501 µs asked for", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { width_us: 501, ..stimulus(1000) })),
-        case!(Frequency, "100.1 pps asked for", 1, |_, r, _| r[1] =
+        case!(Frequency, "100.1 pps asked for", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { frequency_tenths_pps: 1001, ..stimulus(1000) })),
-        case!(Charge, "100 mA for 401 µs asked for", 1, |_, r, _| r[1] =
-            Some(Stimulus { width_us: 401, frequency_tenths_pps: 10, ..stimulus(100_000) })),
-        case!(RootMeanSquare, "25 mA r.m.s. asked for", 1, |_, r, _| r[1] = Some(Stimulus {
-            width_us: 500,
-            frequency_tenths_pps: 1000,
-            recovery: 1,
-            ..stimulus(79_000)
-        })),
+        case!(Charge, "50 mA for 401 µs asked for", 1, |_, r, _| r.stimuli[1] =
+            Some(Stimulus { width_us: 401, frequency_tenths_pps: 10, ..stimulus(50_000) })),
+        case!(RootMeanSquare, "11.2 mA r.m.s. asked for", 1, |_, r, _| r.stimuli[1] =
+            Some(Stimulus {
+                width_us: 250,
+                frequency_tenths_pps: 1000,
+                recovery: 1,
+                ..stimulus(50_000)
+            })),
         case!(Session, "5 s of stimulation, 1 s of which had gone", 4_000, |_, _, _| ()),
         case!(Silence, "the host is not heard of", 101, |o, _, _| o.host_heard = false),
         case!(ElectrodeShort, "99 Ω at channel 1", 1, |o, _, _| o.impedance_ohm[1] = Some(99)),
@@ -189,14 +193,19 @@ fn cases() -> Vec<Case> {
         case!(Watchdog, "a restart by the watchdog", 1, |_, _, _| ()),
         case!(Checksum, "one bit of the state", 1, |o, _, _| o.memory_is_intact = false),
         case!(Output, "the output stage does not answer", 1, |o, _, _| o.output_answers = false),
-        case!(Request, "19 µs of width, which the stimulator cannot do", 1, |_, r, _| r[1] =
+        case!(Request, "19 µs of width, which the stimulator cannot do", 1, |_, r, _| r.stimuli
+            [1] =
             Some(Stimulus { width_us: 19, ..stimulus(1000) })),
+        case!(Request, "a row whose activation is infinite", 1, |_, r, _| r.is_finite = false),
         case!(Stopped, "stopped by the host", 1, |_, _, _| ()),
+        case!(StaleRow, "rows stop coming", 52, |_, r, t| r.row_age_us = u64::from(1000 * t)),
+        case!(StaleDrive, "the host does not repeat its drive", 1_002, |_, r, t| r.drive_age_us =
+            u64::from(1000 * t)),
     ]
 }
 
 /// Over once they are latched.
-const OVER: [Fault; 3] = [Fault::Session, Fault::Watchdog, Fault::Stopped];
+const OVER: [Fault; 2] = [Fault::Watchdog, Fault::Stopped];
 
 /// A row of the table.
 fn row(case: &Case) -> String {
@@ -246,7 +255,7 @@ fn row(case: &Case) -> String {
     // With the cause gone, in two steps, and from nothing.
     if again != "allowed" {
         bench.inject = None;
-        assert!(!bench.flows(150), "it does not go on by itself");
+        assert!(!bench.flows(700), "it does not go on by itself");
         bench.arm(case.fault);
     }
     // 2 mA with the first pulse.
@@ -261,7 +270,7 @@ fn every_fault_ends_in_neutral_and_is_in_the_table() {
     let cases = cases();
     let tested: HashSet<Fault> = cases.iter().map(|case| case.fault).collect();
     // All but the one that everything starts with.
-    assert_eq!((tested.len(), tested.contains(&Fault::Boot)), (20, false));
+    assert_eq!((tested.len(), tested.contains(&Fault::Boot)), (22, false));
     let mut table = String::from(
         "| fault | injected | ticks until neutral | arming while it lasts |\n|---|---|---:|---|\n",
     );
@@ -312,13 +321,13 @@ fn amplitudes_rise_by_no_more_per_pulse_than_they_may_and_fall_at_once() {
         if counts > 0 && counts != before {
             // 2 mA a pulse at 40 pps, and two channels with their own.
             let step = (f64::from(counts) - f64::from(before)) * 50_000.0 / 4095.0;
-            assert!(step <= 2_000.0 + 13.0, "{step} µA");
+            assert!(step <= 2_000.0, "{step} µA");
             (before, pulses) = (counts, pulses + 1);
         }
     }
     assert!(pulses > 5 && before == 20_000 * 4095 / 50_000, "{pulses} steps to {before} counts");
     // Down in one step, and up again slowly.
-    bench.inject = Some(|_, r, _| *r = [Some(stimulus(500)), None, None, None]);
+    bench.inject = Some(|_, r, _| r.stimuli = [Some(stimulus(500)), None, None, None]);
     bench.injected = bench.tick;
     // A pulse that has begun ends as it is.
     bench.tick();
@@ -399,9 +408,13 @@ fn a_wider_pulse_is_no_way_round_the_rise() {
             width = 400;
         }
         bench.inject = Some(if width == 20 {
-            |_, r, _| *r = [Some(Stimulus { width_us: 20, ..stimulus(20_000) }), None, None, None]
+            |_, r, _| {
+                r.stimuli = [Some(Stimulus { width_us: 20, ..stimulus(20_000) }), None, None, None]
+            }
         } else {
-            |_, r, _| *r = [Some(Stimulus { width_us: 400, ..stimulus(20_000) }), None, None, None]
+            |_, r, _| {
+                r.stimuli = [Some(Stimulus { width_us: 400, ..stimulus(20_000) }), None, None, None]
+            }
         });
         let charge = u32::from(bench.counts()) * width;
         if charge > 0 {
@@ -420,7 +433,7 @@ fn a_sensor_that_is_stuck_is_seen_in_spite_of_pauses() {
     bench.inject = Some(|o, r, tick| {
         o.path_um = Some(160_001);
         if tick % 1000 < 500 {
-            *r = [None; CHANNELS];
+            r.stimuli = [None; CHANNELS];
         }
     });
     bench.injected = bench.tick;
@@ -448,8 +461,9 @@ fn limits_are_the_same_times_at_every_tick_rate() {
     };
     for tick_us in [500, 1000, 2000] {
         let armed = || {
-            let mut supervisor = Supervisor::new(LIMITS, tick_us, Fault::Boot);
-            supervisor.tick(&observed(true, 160_000), &[None; CHANNELS]);
+            let mut supervisor =
+                Supervisor::new(LIMITS, tick_us, &SCALE, Fault::Boot).expect("valid limits");
+            supervisor.tick(&observed(true, 160_000), &Requested::NOTHING);
             supervisor.acknowledge(Fault::Boot).expect("its name");
             supervisor.arm().expect("nothing is wrong");
             supervisor
@@ -464,8 +478,8 @@ fn limits_are_the_same_times_at_every_tick_rate() {
                 }
                 (supervisor.state(), ticks as u32 * tick_us / 1000)
             };
-        let off = [None; CHANNELS];
-        let on = [Some(stimulus(1000)), None, None, None];
+        let off = Requested::NOTHING;
+        let on = Requested { stimuli: [Some(stimulus(1000)), None, None, None], ..off };
         let noisy = move |tick: i32| observed(true, 160_000 + tick % 2);
         let silence =
             until(&mut armed(), Box::new(move |tick| observed(false, 160_000 + tick % 2)), off);
@@ -484,14 +498,5 @@ fn limits_are_the_same_times_at_every_tick_rate() {
         assert_eq!(supervisor.state(), State::Armed);
         supervisor.tick(&observed(true, 160_000 + 2 * tick + 1), &off);
         assert_eq!(supervisor.state(), State::Latched(Fault::SensorJump));
-        // 2 mA a pulse at 40 pps are 80 mA/s.
-        let mut supervisor = armed();
-        let wanted = [Some(stimulus(20_000)), None, None, None];
-        let mut allowed = 0;
-        for tick in 0..100_000 / tick_us {
-            let [first, ..] = supervisor.tick(&noisy(tick as i32), &wanted);
-            allowed = first.expect("armed").amplitude_ua;
-        }
-        assert_eq!(allowed, 8000, "after 0.1 s at {tick_us}");
     }
 }

@@ -1,10 +1,10 @@
 //! The link: what a host can do to a device, and what nothing on the line can.
 
 use firmware::link::{Answer, Electrode, Readings, Request, RowInputs, Upload};
-use firmware::safety::{Fault, Limits, NotArmed, State};
+use firmware::safety::{Fault, NotArmed, State};
 use firmware::{MUSCLES, Stimulus};
 use stimulator_tests::client::{Client, ClientError};
-use stimulator_tests::device::InProcess;
+use stimulator_tests::device::{InProcess, LIMITS};
 use stimulator_tests::host::{Host, READINGS, STIMULUS, arm, booted, fes, report};
 use vm_nostd::RecruitmentCurveParams;
 
@@ -140,7 +140,7 @@ fn what_is_asked_of_supervision_is_answered_by_it() {
     assert_eq!(reason, format!("{:?}", NotArmed::StillThere(Fault::Supply)));
     arm(&mut host, Fault::Boot);
     // More than is allowed latches; the fault is named by whoever asks.
-    let stimulus = Stimulus { amplitude_ua: Limits::SURFACE.amplitude_ua + 1, ..STIMULUS };
+    let stimulus = Stimulus { amplitude_ua: LIMITS.amplitude_ua + 1, ..STIMULUS };
     host.order(&Request::Drive([Some(stimulus), None, None, None])).expect("taken");
     host.line().tick();
     assert_eq!(report(&mut host).state, State::Latched(Fault::Amplitude));

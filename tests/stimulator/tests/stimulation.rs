@@ -4,8 +4,8 @@
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTransaction};
 use firmware::{
-    Bridge, LEAST_PHASE_US, OutputError, OutputStage, Plan, Pulse, Schedule, Step, Stimulus,
-    StimulusError,
+    Bridge, Guarded, LEAST_PHASE_US, OutputError, OutputStage, Plan, Pulse, Schedule, Step,
+    Stimulus, StimulusError,
 };
 use model_tests::muscles::config;
 use proptest::prelude::*;
@@ -40,7 +40,9 @@ impl Commanded {
     fn set(&mut self, channel: usize, stimulus: Option<Stimulus>) -> Result<(), StimulusError> {
         let mut wanted = self.wanted;
         wanted[channel] = stimulus;
-        self.schedule.follow(&Plan::new(&wanted, &SCALE)?);
+        // Full amplitude from the first pulse on.
+        let plan = Plan::new(&wanted, &SCALE, SCALE.full_scale_ua)?;
+        self.schedule.follow(&Guarded::new(plan));
         self.wanted = wanted;
         Ok(())
     }
