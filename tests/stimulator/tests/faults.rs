@@ -1,151 +1,12 @@
 //! Every fault, injected into a stimulator that is giving pulses: how long until no current can flow, what is
 //! latched, and what it takes to arm again.
 
+use firmware::Stimulus;
 use firmware::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
-use firmware::{Controller, Gate, Limits, PlanQueue, Pulses, Stimulus};
 use std::collections::HashSet;
 use std::path::Path;
-use stimulator_tests::device::LIMITS as BOARD;
-use stimulator_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
-
-/// A tick, µs.
-const TICK: u32 = 1000;
-
-/// A controller and its pulse timer on fakes, and the time.
-struct Bench {
-    controller: Controller<'static>,
-    pulses: Pulses<'static, Converter, Pin>,
-    electrodes: Shared,
-    tick: u32,
-    /// When the pulse timer runs out, µs, and how long the step lasts that begins then.
-    timer: u32,
-    step_us: u32,
-    /// What observation and request are changed by, if a fault is injected.
-    inject: Option<fn(&mut Observed, &mut Requested, u32)>,
-    injected: u32,
-    /// The tick is not called.
-    hangs: bool,
-}
-
-fn stimulus(amplitude_ua: u32) -> Stimulus {
-    Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 400, recovery: 1 }
-}
-
-/// Long sessions cost time; and each limit is reached before another one.
-const LIMITS: Limits =
-    Limits { session_ms: 5_000, rest_ms: 600, charge_nc: 20_000, rms_ua: 10_000, ..BOARD };
-
-impl Bench {
-    fn new(boot: Fault) -> Self {
-        let (stage, electrodes) = stage();
-        // As statics of a firmware are.
-        let queue: &'static mut PlanQueue = Box::leak(Box::default());
-        let gate: &'static Gate = Box::leak(Box::default());
-        let (give, take) = queue.split();
-        Self {
-            controller: Controller::new(LIMITS, TICK, boot, SCALE, give, gate)
-                .expect("valid limits"),
-            pulses: Pulses::new(stage, take, gate, TICK),
-            electrodes,
-            tick: 0,
-            timer: 0,
-            step_us: Pulses::<Converter, Pin>::FIRST_US,
-            inject: None,
-            injected: 0,
-            hangs: false,
-        }
-    }
-
-    /// A tick, and all that the timer does until the next one. True if current can flow at any time after the
-    /// tick itself.
-    fn tick(&mut self) -> bool {
-        self.counts() > 0
-    }
-
-    /// The same: the most counts while a way for the current is open.
-    fn counts(&mut self) -> u16 {
-        self.control();
-        let mut most = self.flowing();
-        while self.timer < self.tick * TICK {
-            self.run_out();
-            most = most.max(self.flowing());
-        }
-        most
-    }
-
-    /// Until the middle of a phase with current, ticks as they come.
-    fn until_current(&mut self) {
-        for _ in 0..10_000 {
-            if self.electrodes.borrow().counts > 0 {
-                return;
-            }
-            if self.timer >= self.tick * TICK {
-                self.control();
-            }
-            self.run_out();
-        }
-        panic!("no current");
-    }
-
-    /// The tick itself.
-    fn control(&mut self) {
-        let mut observed = Observed {
-            host_heard: self.tick.is_multiple_of(20),
-            impedance_ohm: [Some(900), Some(1100), None, None],
-            supply_mv: 3700,
-            // With the noise that a sensor has.
-            path_um: Some(160_000 + (self.tick % 3) as i32),
-            in_time: true,
-            memory_is_intact: true,
-            output_answers: true,
-        };
-        let mut request = Requested {
-            stimuli: [Some(stimulus(20_000)), Some(stimulus(20_000)), None, None],
-            ..Requested::NOTHING
-        };
-        if let Some(inject) = self.inject {
-            inject(&mut observed, &mut request, self.tick - self.injected);
-        }
-        if !self.hangs && !self.controller.tick(&observed, &request) {
-            self.electrodes.borrow_mut().words = 0;
-            self.pulses.attend();
-        }
-        self.tick += 1;
-    }
-
-    /// The pulse timer runs out.
-    fn run_out(&mut self) {
-        self.electrodes.borrow_mut().words = 0;
-        self.timer += self.step_us;
-        self.step_us = self.pulses.timer();
-    }
-
-    fn flowing(&self) -> u16 {
-        let electrodes = self.electrodes.borrow();
-        assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);
-        if electrodes.cathodic || electrodes.anodic { electrodes.counts } else { 0 }
-    }
-
-    /// Whether any of so many ticks lets current flow.
-    fn flows(&mut self, ticks: u32) -> bool {
-        (0..ticks).fold(false, |flows, _| self.tick() | flows)
-    }
-
-    fn arm(&mut self, fault: Fault) {
-        self.controller.acknowledge(fault).expect("the fault that is latched");
-        self.tick();
-        self.controller.arm().expect("nothing is wrong");
-    }
-
-    /// Giving pulses of full amplitude.
-    fn running() -> Self {
-        let mut bench = Self::new(Fault::Boot);
-        bench.tick();
-        bench.arm(Fault::Boot);
-        assert!(bench.flows(1000));
-        bench
-    }
-}
+use stimulator_tests::bench::{Bench, LIMITS, stimulus};
+use stimulator_tests::electrodes::SCALE;
 
 /// A fault, how it is injected, and the most ticks it may take to see it.
 struct Case {
@@ -210,8 +71,7 @@ const OVER: [Fault; 2] = [Fault::Watchdog, Fault::Stopped];
 /// A row of the table.
 fn row(case: &Case) -> String {
     let mut bench = Bench::running();
-    bench.inject = Some(case.inject);
-    bench.injected = bench.tick;
+    bench.inject(case.inject);
     match case.fault {
         Fault::Watchdog => bench = Bench::new(Fault::Watchdog),
         // Between two ticks, as the link does.
@@ -254,7 +114,7 @@ fn row(case: &Case) -> String {
 
     // With the cause gone, in two steps, and from nothing.
     if again != "allowed" {
-        bench.inject = None;
+        bench.inject_nothing();
         assert!(!bench.flows(700), "it does not go on by itself");
         bench.arm(case.fault);
     }
@@ -327,12 +187,11 @@ fn amplitudes_rise_by_no_more_per_pulse_than_they_may_and_fall_at_once() {
     }
     assert!(pulses > 5 && before == 20_000 * 4095 / 50_000, "{pulses} steps to {before} counts");
     // Down in one step, and up again slowly.
-    bench.inject = Some(|_, r, _| r.stimuli = [Some(stimulus(500)), None, None, None]);
-    bench.injected = bench.tick;
+    bench.inject(|_, r, _| r.stimuli = [Some(stimulus(500)), None, None, None]);
     // A pulse that has begun ends as it is.
     bench.tick();
     assert!((0..100).all(|_| bench.counts() <= 41));
-    bench.inject = None;
+    bench.inject_nothing();
     assert!((0..25).all(|_| bench.counts() <= 41 + 4095 * 2 / 50));
 }
 
@@ -402,21 +261,15 @@ fn a_pulse_timer_that_overruns_is_a_fault() {
 #[test]
 fn a_wider_pulse_is_no_way_round_the_rise() {
     let mut bench = Bench::running();
-    let (mut before, mut width) = (0_u32, 20);
+    let (mut before, mut width) = (0_u32, 20_u16);
     for tick in 0..600 {
         if tick == 300 {
             width = 400;
         }
-        bench.inject = Some(if width == 20 {
-            |_, r, _| {
-                r.stimuli = [Some(Stimulus { width_us: 20, ..stimulus(20_000) }), None, None, None]
-            }
-        } else {
-            |_, r, _| {
-                r.stimuli = [Some(Stimulus { width_us: 400, ..stimulus(20_000) }), None, None, None]
-            }
+        bench.inject(move |_, r, _| {
+            r.stimuli = [Some(Stimulus { width_us: width, ..stimulus(20_000) }), None, None, None];
         });
-        let charge = u32::from(bench.counts()) * width;
+        let charge = u32::from(bench.counts()) * u32::from(width);
         if charge > 0 {
             // 2 mA for 400 µs in counts, and what rounding adds.
             assert!(charge <= before + (2 * 4095 / 50 + 2) * 400, "{charge} after {before}");
@@ -430,13 +283,12 @@ fn a_wider_pulse_is_no_way_round_the_rise() {
 #[test]
 fn a_sensor_that_is_stuck_is_seen_in_spite_of_pauses() {
     let mut bench = Bench::running();
-    bench.inject = Some(|o, r, tick| {
+    bench.inject(|o, r, tick| {
         o.path_um = Some(160_001);
         if tick % 1000 < 500 {
             r.stimuli = [None; CHANNELS];
         }
     });
-    bench.injected = bench.tick;
     let ticks = (0..10_000).take_while(|_| {
         bench.tick();
         bench.controller.state() == State::Armed
