@@ -78,6 +78,12 @@ impl<'q> Controller<'q> {
         self.gate.set_open(self.state() == State::Armed);
     }
 
+    /// What memory does to a scale.
+    #[cfg(test)]
+    pub(crate) fn corrupt_scale(&mut self) {
+        self.scale.corrupt(|scale| scale.full_scale_ua /= 2);
+    }
+
     /// The hard tick. Where stimulation is not allowed it returns false, and the pulse timer's interrupt is to be
     /// called for: everything is neutral when that has passed.
     #[must_use]

@@ -395,3 +395,6 @@ impl<'q> Device<'q> {
 fn armed(result: Result<(), NotArmed>) -> Outcome {
     result.map_or_else(Outcome::NotArmed, |()| Outcome::Done)
 }
+
+#[cfg(test)]
+mod tests;

@@ -38,6 +38,12 @@ impl<T: Sum> Guarded<T> {
         Self { value, sum }
     }
 
+    /// What memory does to a value.
+    #[cfg(test)]
+    pub(crate) fn corrupt(&mut self, change: impl FnOnce(&mut T)) {
+        change(&mut self.value);
+    }
+
     /// The value; none if memory has lost a bit of it.
     pub fn get(&self) -> Option<&T> {
         (sum_of(&self.value) == self.sum).then_some(&self.value)

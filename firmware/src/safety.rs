@@ -361,3 +361,6 @@ fn mean_square(stimulus: &Stimulus) -> u64 {
     // 10^12 times 2^24 fits; 10^7 is µs in a second, and tenths of a pulse.
     (amplitude * amplitude * on_us / 10_000).saturating_mul(frequency) / recovery / 1_000
 }
+
+#[cfg(test)]
+mod tests;

@@ -216,3 +216,67 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
 fn duration(pulse: &Pulse, phase: usize) -> u32 {
     pulse.phases.get(phase).map_or(0, |phase| phase.duration_us.into())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Schedule, Step};
+    use crate::guarded::Guarded;
+    use crate::plan::Plan;
+    use crate::stimulus::{Scale, Stimulus};
+
+    const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
+
+    fn plan() -> Guarded<Plan<2>> {
+        let stimulus = Stimulus {
+            amplitude_ua: 10_000,
+            width_us: 200,
+            gap_us: 50,
+            frequency_tenths_pps: 400,
+            recovery: 1,
+        };
+        let plan = Plan::new(&[Some(stimulus), None], &SCALE, 2_000).expect("a legal command");
+        Guarded::new(plan)
+    }
+
+    /// Counts that come within 0.2 s.
+    fn most_counts(schedule: &mut Schedule<2>) -> u16 {
+        (0..2_000)
+            .map(|_| schedule.advance())
+            .filter_map(|step: Step| step.output.map(|(_, phase)| phase.counts))
+            .max()
+            .unwrap_or(0)
+    }
+
+    #[test]
+    fn a_plan_that_lost_a_bit_on_its_way_puts_nothing_out() {
+        let mut schedule = Schedule::<2>::new();
+        let mut waiting = plan();
+        waiting.corrupt(|plan| plan.rise ^= 1);
+        schedule.follow(&waiting);
+        assert!(!schedule.is_intact());
+        assert_eq!(most_counts(&mut schedule), 0);
+    }
+
+    #[test]
+    fn a_plan_that_loses_a_bit_while_it_is_followed_starts_no_other_pulse() {
+        let mut schedule = Schedule::<2>::new();
+        schedule.follow(&plan());
+        assert!(schedule.is_intact());
+        assert!(most_counts(&mut schedule) > 0);
+        while schedule.running.is_some() {
+            schedule.advance();
+        }
+        schedule.plan.corrupt(|plan| {
+            if let Some(Some(train)) = plan.trains.first_mut() {
+                train.width_us ^= 1 << 9;
+            }
+        });
+        assert!(!schedule.is_intact());
+        assert_eq!(most_counts(&mut schedule), 0);
+        // It is forgotten with a halt, and another one is followed.
+        schedule.halt();
+        assert!(schedule.is_intact());
+        schedule.follow(&plan());
+        assert!(most_counts(&mut schedule) > 0);
+    }
+}

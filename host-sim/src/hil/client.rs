@@ -278,6 +278,9 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::NoRoom { room } => format!("room for {room} rows"),
         Refusal::NotStored => "memory did not keep it; what was stored before still is".to_owned(),
         Refusal::NotArmed(reason) => format!("{reason:?}"),
+        Refusal::ChannelTaken { channel, place } => {
+            format!("channel {channel} is that of the electrode of muscle {place}")
+        }
     }
 }
 

@@ -239,3 +239,103 @@ fn muscles_outlast_a_loss_of_power() {
     assert_eq!(after, before);
     assert_eq!(report(&mut host).state, State::Latched(Fault::Boot));
 }
+
+/// A muscle at place 0 whose electrode is channel 0, armed, and rows that ask for pulses.
+fn stimulated() -> Host {
+    let mut host = booted();
+    let upload = Upload { electrode: Some(ELECTRODE), ..fes() };
+    host.order(&Request::Upload { place: 0, upload }).expect("a muscle");
+    host.order(&Request::Rest([Some(0.16), None])).expect("a path");
+    arm(&mut host, Fault::Boot);
+    for first in (0..400).step_by(8) {
+        let inputs = RowInputs { activation: 0.6, path_length: 0.16, stimulation_frequency: 40.0 };
+        let rows = heapless::Vec::from_slice(&[[inputs, RowInputs::default()]; 8]).expect("room");
+        let request = Request::Rows { first, rows };
+        while let Err(error) = host.order(&request) {
+            assert!(matches!(error, ClientError::Refused { no_room: true, .. }), "{error:?}");
+        }
+        read(&mut host, first / 8);
+    }
+    host
+}
+
+/// Readings of a sensor that has noise.
+fn read(host: &mut Host, index: u32) {
+    let path_um = Some(160_000 + i32::try_from(index % 2).expect("0 or 1"));
+    host.order(&Request::Readings(Readings { path_um, ..READINGS })).expect("readings");
+}
+
+/// A host whose rows end, and that goes on reading its sensors.
+#[test]
+fn a_stimulus_does_not_outlive_the_rows_it_comes_from() {
+    let mut host = stimulated();
+    assert!(host.line().flowed() > 0);
+    assert_eq!(report(&mut host).state, State::Armed);
+    for index in 0..20 {
+        read(&mut host, index);
+        (0..5).for_each(|_| host.line().tick());
+    }
+    host.line().flowed();
+    assert_eq!(report(&mut host).state, State::Latched(Fault::StaleRow));
+    for index in 0..100 {
+        read(&mut host, index);
+        (0..5).for_each(|_| host.line().tick());
+    }
+    assert_eq!(host.line().flowed(), 0);
+    // Armed again, what those rows asked for is not put out.
+    arm(&mut host, Fault::StaleRow);
+    (0..20).for_each(|_| host.line().tick());
+    assert_eq!(host.line().flowed(), 0);
+}
+
+#[test]
+fn a_drive_is_put_out_for_a_second_and_no_longer() {
+    let mut host = booted();
+    arm(&mut host, Fault::Boot);
+    host.order(&Request::Drive([None, Some(STIMULUS), None, None])).expect("taken");
+    let begun = report(&mut host).ticks;
+    let mut index = 0;
+    let ticks = loop {
+        read(&mut host, index);
+        index += 1;
+        let report = report(&mut host);
+        if report.state != State::Armed {
+            assert_eq!(report.state, State::Latched(Fault::StaleDrive));
+            break report.ticks - begun;
+        }
+    };
+    assert!((990..1_010).contains(&ticks), "{ticks}");
+    assert!(host.line().flowed() > 0);
+    // Repeated, it goes on.
+    arm(&mut host, Fault::StaleDrive);
+    for index in 0..600 {
+        host.order(&Request::Drive([None, Some(STIMULUS), None, None])).expect("taken");
+        read(&mut host, index);
+    }
+    assert_eq!(report(&mut host).state, State::Armed);
+}
+
+/// A channel stimulates what one electrode, or what a drive, asks for.
+#[test]
+fn a_channel_has_one_electrode_and_no_drive_beside_it() {
+    let mut host = booted();
+    let upload = Upload { electrode: Some(ELECTRODE), ..fes() };
+    let taken = |answer: Result<(), ClientError>| match answer {
+        Err(ClientError::Refused { reason, .. }) => reason,
+        other => panic!("{other:?}"),
+    };
+    host.order(&Request::Upload { place: 1, upload }).expect("a muscle");
+    let reason = taken(host.order(&Request::Upload { place: 0, upload }));
+    assert_eq!(reason, "ChannelTaken { channel: 0, place: 1 }");
+    let reason = taken(host.order(&Request::Drive([Some(STIMULUS), None, None, None])));
+    assert_eq!(reason, "ChannelTaken { channel: 0, place: 1 }");
+    // Its own place may have it again, other channels may be driven, and it is free when it is given up.
+    host.order(&Request::Upload { place: 1, upload }).expect("the same muscle");
+    host.order(&Request::Drive([None, Some(STIMULUS), None, None])).expect("a free channel");
+    let elsewhere = Electrode { channel: 3, ..ELECTRODE };
+    let upload = Upload { electrode: Some(elsewhere), ..upload };
+    host.order(&Request::Upload { place: 1, upload }).expect("the same muscle elsewhere");
+    host.order(&Request::Drive([Some(STIMULUS), None, None, None])).expect("a free channel");
+    let upload = Upload { electrode: Some(ELECTRODE), ..upload };
+    host.order(&Request::Upload { place: 0, upload }).expect("a free channel");
+}
