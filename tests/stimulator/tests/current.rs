@@ -117,7 +117,7 @@ proptest! {
         let limits = Limits { width_us: 1000, ..Limits::SURFACE }.within_scale(&SCALE);
         let mut bench = armed(limits, tick_us);
         bench.inject(move |_, r, tick| {
-            let amplitude_ua = 10_000 + tick % 2;
+            let amplitude_ua = 10_000 + 100 * (tick % 2);
             let frequency_tenths_pps = 100;
             *r = one(Stimulus { amplitude_ua, width_us, gap_us, frequency_tenths_pps, recovery });
         });
@@ -132,7 +132,7 @@ fn the_longest_pulse_at_the_shortest_tick_leaves_room_for_plans() {
     let mut bench = armed(limits, 500);
     bench.inject(move |_, r, tick| {
         *r = one(Stimulus {
-            amplitude_ua: 10_000 + tick % 2,
+            amplitude_ua: 10_000 + 100 * (tick % 2),
             width_us: 1000,
             gap_us: 200,
             frequency_tenths_pps: 900,
