@@ -61,9 +61,18 @@ pub fn element_rows() -> Vec<(String, Row)> {
 
 /// The names a fibre type's coefficients go by, in the order of the table.
 pub fn fiber_columns() -> Vec<String> {
-    let mut reader = csv::Reader::from_reader(FIBERS.as_bytes());
+    columns(FIBERS, 2)
+}
+
+/// The names that the elements' coefficients go by, in the order of the table.
+pub fn element_columns() -> Vec<String> {
+    columns(ELEMENTS, 1)
+}
+
+fn columns(text: &'static str, labels: usize) -> Vec<String> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().expect("a header in the built-in table");
-    header.iter().skip(2).map(str::to_owned).collect()
+    header.iter().skip(labels).map(str::to_owned).collect()
 }
 
 /// The row of a preset fibre type, such as "paper-table-1/slow".
@@ -79,9 +88,18 @@ pub fn fiber(preset: &str, fraction: f64) -> Option<Fiber> {
 
 /// The shared elements of a set, such as "paper-table-1".
 pub fn elements(set: &str) -> Option<Elements> {
-    let row = find(element_rows(), set)?;
+    Some(elements_of(&element_row(set)?))
+}
+
+/// The row of a set of shared elements, with a value for every column.
+pub fn element_row(set: &str) -> Option<Row> {
+    find(element_rows(), set)
+}
+
+/// Shared elements from a full row.
+pub fn elements_of(row: &Row) -> Elements {
     let get = |name: &str| row.get(name).copied().expect("a full row in the built-in table");
-    Some(Elements {
+    Elements {
         cT: get("cT"),
         kT: get("kT"),
         LrT: get("LrT"),
@@ -94,7 +112,7 @@ pub fn elements(set: &str) -> Option<Elements> {
         Lr2: get("Lr2"),
         specific_tension: get("specific_tension_n_per_cm2") * 1e4,
         density: get("density_g_per_cm3") * 1e3,
-    })
+    }
 }
 
 fn find(rows: Vec<(String, Row)>, label: &str) -> Option<Row> {

@@ -174,6 +174,18 @@ const KEYS: &[(&str, &str, f64)] = &[
     ("tendon_length", "tendon_length_cm", 1e2),
     ("max_path_length", "max_path_length_cm", 1e2),
     ("recruitment_saturation", "recruitment_saturation", 1.0),
+    ("tendon.stiffness", "elements.cT", 1.0),
+    ("tendon.toe", "elements.kT", 1.0),
+    ("tendon.slack_length", "elements.LrT", 1.0),
+    ("parallel.stiffness", "elements.c1", 1.0),
+    ("parallel.toe", "elements.k1", 1.0),
+    ("parallel.slack_length", "elements.Lr1", 1.0),
+    ("parallel.viscosity", "elements.eta", 1.0),
+    ("compression.strength", "elements.c2", 1.0),
+    ("compression.steepness", "elements.k2", 1.0),
+    ("compression.onset_length", "elements.Lr2", 1.0),
+    ("specific_tension", "elements.specific_tension_n_per_cm2", 1e-4),
+    ("density", "elements.density_g_per_cm3", 1e-3),
     ("fatigue_time", "fatigue.T_fat_s", 1.0),
     ("recovery_time", "fatigue.T_rec_s", 1.0),
     ("least_fitness", "fatigue.fit_min", 1.0),
@@ -219,6 +231,8 @@ fn refusal(error: vm::ParameterError) -> Refusal {
         .iter()
         .find(|(name, ..)| *name == field)
         .map_or((field, 1.0), |&(_, key, scale)| (key, scale));
+    // In a unit of its own.
+    let scale = if derived.is_some() { 1.0 } else { scale };
     let key = derived.map_or(key.to_owned(), |derived| format!("{key}: {derived}"));
     let limit = match error.limit {
         vm::Limit::Within { least, most } => {

@@ -1,10 +1,15 @@
 //! A muscle described in TOML: read, resolved against the published sets, and validated.
 
+mod line;
+mod size;
+
 use crate::coefficients::{self, Row, RowError};
 use crate::engine::MOST_UNITS;
 use crate::link;
 use crate::reference::{Fatigue, Fiber, Muscle, UnitSizes};
+use line::line_of;
 use serde::Deserialize;
+use size::{ANY_MASS, Size};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -28,10 +33,12 @@ pub enum MuscleFileError {
         message: String,
     },
     /// A value that no muscle can have.
-    #[error("{}: {key} = {value}: {limit}", path.display())]
+    #[error("{}{}: {key} = {value}: {limit}", path.display(), line.map_or(String::new(), |line| format!(", line {line}")))]
     Value {
         /// The file.
         path: PathBuf,
+        /// The key's line, counted from 1; none where the file does not have it.
+        line: Option<usize>,
         /// The key, with its table.
         key: String,
         /// The refused value, as in the file.
@@ -46,7 +53,8 @@ pub enum MuscleFileError {
 #[serde(deny_unknown_fields)]
 struct MuscleFile {
     name: String,
-    mass_g: f64,
+    mass_g: Option<f64>,
+    max_isometric_force_n: Option<f64>,
     fascicle_length_cm: f64,
     tendon_length_cm: f64,
     max_path_length_cm: f64,
@@ -54,6 +62,8 @@ struct MuscleFile {
     recruitment_saturation: f64,
     #[serde(default = "default_coefficients")]
     coefficients: String,
+    #[serde(default)]
+    elements: BTreeMap<String, toml::Value>,
     #[serde(default)]
     fiber: Vec<FiberTable>,
     fatigue: Option<FatigueTable>,
@@ -136,11 +146,13 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     })?;
     let refuse = |key: String, value: String, limit: String| MuscleFileError::Value {
         path: path.to_owned(),
+        line: line_of(text, &key),
         key,
         value,
         limit,
     };
-    let elements = coefficients::elements(&file.coefficients).ok_or_else(|| {
+    let refused = |(key, value, limit): Refusal| refuse(key, value, limit);
+    let mut elements = coefficients::element_row(&file.coefficients).ok_or_else(|| {
         let sets: Vec<String> = coefficients::element_rows().into_iter().map(|(s, _)| s).collect();
         refuse(
             "coefficients".to_owned(),
@@ -148,6 +160,15 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
             format!("must be one of {}", sets.join(", ")),
         )
     })?;
+    override_by_name(
+        &mut elements,
+        &file.elements,
+        &coefficients::element_columns(),
+        "elements have",
+    )
+    .map_err(|(key, value, limit)| refuse(format!("elements.{key}"), value, limit))?;
+    let elements = coefficients::elements_of(&elements);
+    let size = Size::of(file.mass_g, file.max_isometric_force_n).map_err(refused)?;
     let fibers: Vec<Fiber> = file
         .fiber
         .iter()
@@ -160,8 +181,8 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         .collect::<Result<_, _>>()?;
     let mut order: Vec<usize> = (0..fibers.len()).collect();
     order.sort_by_key(|&index| fibers[index].fiber_type.rank);
-    let muscle = Muscle {
-        mass: file.mass_g * 1e-3,
+    let mut muscle = Muscle {
+        mass: ANY_MASS,
         L_ce0: file.fascicle_length_cm * 1e-2,
         L_se0: file.tendon_length_cm * 1e-2,
         L_mt_max: file.max_path_length_cm * 1e-2,
@@ -175,36 +196,37 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         let limit = format!("a muscle has at most {MOST_UNITS} here, of all types together");
         return Err(refuse("fiber.units".to_owned(), units.to_string(), limit));
     }
-    link::validate(&muscle).map_err(|refusal| {
-        let key = match refusal.fiber {
-            Some(index) => format!("fiber[{}].{}", order[index], refusal.key),
-            None => refusal.key,
-        };
-        refuse(key, refusal.value, refusal.limit)
-    })?;
+    let validate = |muscle: &Muscle| {
+        link::validate(muscle).map_err(|refusal| {
+            let key = match refusal.fiber {
+                Some(index) => format!("fiber[{}].{}", order[index], refusal.key),
+                None => refusal.key,
+            };
+            (key, refusal.value, refusal.limit)
+        })
+    };
+    // A mass that is computed is refused only where what it is computed from is right.
+    if matches!(size, Size::Force(_)) {
+        validate(&muscle).map_err(refused)?;
+    }
+    muscle.mass = size.mass(&muscle);
+    validate(&muscle).map_err(|refusal| refused(size.refusal(refusal)))?;
     Ok(NamedMuscle { name: file.name, muscle })
 }
 
-/// A fibre table's key, value and the limit it broke.
+/// A key, its value and the limit it broke.
 type Refusal = (String, String, String);
 
-fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
-    let mut row = match &table.preset {
-        None => Row::new(),
-        Some(preset) => coefficients::fiber_row(preset).ok_or_else(|| {
-            let known: Vec<String> =
-                coefficients::fiber_rows().into_iter().map(|(name, _)| name).collect();
-            let limit = format!("must be one of {}", known.join(", "));
-            ("preset".to_owned(), format!("\"{preset}\""), limit)
-        })?,
-    };
-    let columns = coefficients::fiber_columns();
-    for (key, value) in &table.overrides {
+/// Coefficients of a row replaced by those that a table has of the same names.
+fn override_by_name(
+    row: &mut Row,
+    table: &BTreeMap<String, toml::Value>,
+    columns: &[String],
+    has: &str,
+) -> Result<(), Refusal> {
+    for (key, value) in table {
         if !columns.contains(key) {
-            let limit = format!(
-                "unknown key; a fibre has preset, fraction, units, unit_sizes and the coefficients {}",
-                columns.join(", ")
-            );
+            let limit = format!("unknown key; {has} the coefficients {}", columns.join(", "));
             return Err((key.clone(), value.to_string(), limit));
         }
         let number = match value {
@@ -217,6 +239,22 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
         }
         row.insert(key.clone(), number);
     }
+    Ok(())
+}
+
+fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
+    let mut row = match &table.preset {
+        None => Row::new(),
+        Some(preset) => coefficients::fiber_row(preset).ok_or_else(|| {
+            let known: Vec<String> =
+                coefficients::fiber_rows().into_iter().map(|(name, _)| name).collect();
+            let limit = format!("must be one of {}", known.join(", "));
+            ("preset".to_owned(), format!("\"{preset}\""), limit)
+        })?,
+    };
+    let columns = coefficients::fiber_columns();
+    let has = "a fibre has preset, fraction, units, unit_sizes and";
+    override_by_name(&mut row, &table.overrides, &columns, has)?;
     let fiber_type = coefficients::fiber_type(&row).map_err(|error| match error {
         RowError::Missing(name) => (
             name.to_owned(),
