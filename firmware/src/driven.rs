@@ -54,10 +54,7 @@ impl Driven {
     pub(crate) fn build(upload: &Upload, step: TimeStep) -> Result<Self, Refusal<'static>> {
         let electrode =
             upload.electrode.map(|electrode| checked(upload.mode, electrode)).transpose()?;
-        let path_length = {
-            let (least, most) = upload.muscle.path_domain();
-            (0.5 * (least + most)) as f32
-        };
+        let path_length = upload.muscle.middle_path() as f32;
         let muscle = match upload.mode {
             Mode::Continuous => {
                 let muscle = ContinuousMuscle::build(&upload.muscle, step)?;

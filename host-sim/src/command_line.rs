@@ -236,8 +236,9 @@ fn check_run(
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
         let problem = format!(
-            "{first}: the muscle's path is between {shortest:.6} and {longest:.6} m, \
-             and the first row is where it rests"
+            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with the \
+             fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps them at lengths \
+             that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
         );
         return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
     }

@@ -202,7 +202,8 @@ impl Rest<'_> {
                 Ok::<_, RunError>(Tiring { fatigue, state: fatigue.rested(), stimulated })
             })
             .transpose()?;
-        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, tiring }))
+        let f0 = params.max_isometric_force();
+        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, tiring, f0 }))
     }
 }
 
@@ -227,6 +228,8 @@ struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
     muscle: Rc<vm::Muscle<S, R, N>>,
     state: vm::State<S, R, N>,
     tiring: Option<Tiring<S>>,
+    /// N.
+    f0: f64,
 }
 
 /// How tired a muscle is.
@@ -252,19 +255,21 @@ impl<S: vm::Scalar> Tiring<S> {
 impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Stepped<S, R, N> {
     fn row(&self) -> Row {
         let output = self.muscle.observe(&self.state);
-        row(match &self.tiring {
+        let output = match &self.tiring {
             Some(tiring) => output.weakened(tiring.state.fitness()),
             None => output,
-        })
+        };
+        row(output, self.f0)
     }
 
     fn step(&mut self, input: Input) -> Result<Row, RunError> {
         let input = scaled(&input);
         let output = self.muscle.step(&mut self.state, input);
-        Ok(row(match &mut self.tiring {
+        let output = match &mut self.tiring {
             Some(tiring) => output.weakened(tiring.advance(input)),
             None => output,
-        }))
+        };
+        Ok(row(output, self.f0))
     }
 
     fn fork(&self) -> Box<dyn Running> {
@@ -296,9 +301,9 @@ fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {
     }
 }
 
-fn row<S: vm::Scalar>(output: vm::Output<S>) -> Row {
+fn row<S: vm::Scalar>(output: vm::Output<S>, f0: f64) -> Row {
     let sample = Sample {
-        force: S::newtons(output.force),
+        force: S::newtons_of(output.force, output.relative_force, f0),
         fascicle_length: output.fascicle_length.to_f64(),
         fascicle_velocity: output.fascicle_velocity.to_f64(),
     };

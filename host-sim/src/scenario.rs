@@ -2,6 +2,7 @@
 //! harder in one way or another.
 
 use crate::coefficients;
+use crate::muscle_file;
 use crate::reference::{Fatigue, Fiber, Input, Mode, Muscle, UnitSizes};
 use crate::trace::{self, InputTrace};
 use std::f64::consts::TAU;
@@ -97,6 +98,8 @@ struct Vector {
     mode: Mode,
     /// Motor units per type, in a discrete mode.
     units: usize,
+    /// The muscle's file, where it is not the paper's muscle.
+    muscle: Option<&'static str>,
     text: &'static str,
 }
 
@@ -106,7 +109,14 @@ macro_rules! vector {
             name: $name,
             mode: Mode::$mode,
             units: $units,
+            muscle: None,
             text: include_str!(concat!("../data/vectors/", $name, ".csv")),
+        }
+    };
+    ($name:literal, $mode:ident of a muscle file) => {
+        Vector {
+            muscle: Some(include_str!(concat!("../data/vectors/", $name, ".toml"))),
+            ..vector!($name, $mode, 0)
         }
     };
 }
@@ -120,6 +130,8 @@ const VECTORS: &[Vector] = &[
     vector!("fes_steps", Fes, 0),
     vector!("discrete_3_activation_3hz", Discrete, 3),
     vector!("discrete_30_length_3hz", Discrete, 30),
+    vector!("soleus_gait", Continuous of a muscle file),
+    vector!("passive_cyclic", Continuous of a muscle file),
 ];
 
 /// Path length of the paper's figures, m.
@@ -205,15 +217,20 @@ fn smooth(x: f64) -> f64 {
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
-fn vector(&Vector { name, mode, units, text }: &Vector) -> Scenario {
+fn vector(&Vector { name, mode, units, muscle, text }: &Vector) -> Scenario {
     let path = Path::new(name);
+    let muscle = match muscle {
+        Some(file) => muscle_file::parse(file, path).expect("a built-in muscle").muscle,
+        None if units > 0 => paper_muscle_of_units(units),
+        None => paper_muscle(),
+    };
     let trace = trace::parse_inputs(text.as_bytes(), path).expect("a built-in vector");
     let mut columns = trace::INPUT_COLUMNS.to_vec();
     columns.push("force_n");
     let rows = trace::numbers(text.as_bytes(), path, &columns).expect("a built-in vector");
     Scenario {
         name: name.to_owned(),
-        muscle: if units > 0 { paper_muscle_of_units(units) } else { paper_muscle() },
+        muscle,
         mode,
         trace,
         vector: Some(rows.iter().map(|(_, row)| row[4]).collect()),

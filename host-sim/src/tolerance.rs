@@ -53,6 +53,6 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
         _ => 1.0,
     };
     // Where a tendon rings, as one that snaps taut or is pulled at with a jerk.
-    let rings = ["passive", "velocity_kinks"].iter().any(|name| scenario.starts_with(name));
+    let rings = ["passive_length", "velocity_kinks"].iter().any(|name| scenario.starts_with(name));
     if rings { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
 }

@@ -85,6 +85,18 @@ static int misuse(void) {
     CHECK(vm_f32_checksums(&muscle_f32, &coefficients, &changed) == VM_RESULT_OK && changed != state);
     CHECK(vm_f32_restore(&muscle_f32, &saved) == VM_RESULT_OK);
     CHECK(vm_f32_checksums(&muscle_f32, &coefficients, &changed) == VM_RESULT_OK && changed == state);
+    /* Another muscle, mode or time step refuses it. */
+    static VmMuscleF32 other;
+    VmMuscleParams heavier = params;
+    heavier.mass_kg *= 1.01;
+    CHECK(vm_f32_build(&other, sizeof other, &heavier, VM_MODE_FES, 1e-3, 0) == VM_RESULT_OK);
+    CHECK(vm_f32_restore(&other, &saved) == VM_RESULT_OTHER_MUSCLE);
+    CHECK(vm_f32_build(&other, sizeof other, &params, VM_MODE_CONTINUOUS, 1e-3, 0) == VM_RESULT_OK);
+    CHECK(vm_f32_restore(&other, &saved) == VM_RESULT_OTHER_MUSCLE);
+    CHECK(vm_f32_build(&other, sizeof other, &params, VM_MODE_FES, 5e-4, 0) == VM_RESULT_OK);
+    CHECK(vm_f32_restore(&other, &saved) == VM_RESULT_OTHER_MUSCLE);
+    CHECK(vm_f32_build(&other, sizeof other, &params, VM_MODE_FES, 1e-3, 0) == VM_RESULT_OK);
+    CHECK(vm_f32_restore(&other, &saved) == VM_RESULT_OK);
     /* Out of range is clipped, and said. */
     const VmInputF32 beyond = {1.5f, 0.16f, 20.0f};
     CHECK(vm_f32_step(&muscle_f32, &beyond, &output) == VM_RESULT_OK);
@@ -100,7 +112,7 @@ static int play_f32(uint32_t mode) {
         VmOutputF32 output;
         CHECK(vm_f32_step(&muscle_f32, &inputs_f32[tick], &output) == VM_RESULT_OK);
         const uint32_t status = output.status;
-        platform_write(&output, 12);
+        platform_write(&output, 16);
         platform_write(&status, 4);
     }
     return 0;
@@ -114,7 +126,7 @@ static int play_fixed(uint32_t mode) {
         VmOutputFixed output;
         CHECK(vm_fixed_step(&muscle_fixed, &inputs_fixed[tick], &output) == VM_RESULT_OK);
         const uint32_t status = output.status;
-        platform_write(&output, 12);
+        platform_write(&output, 16);
         platform_write(&status, 4);
     }
     return 0;

@@ -121,10 +121,11 @@ fn played<S: Scalar<Bits = u32>>(inputs: &[Input<S>], fes: bool) -> Vec<u8> {
             S::force_bits(output.force),
             output.fascicle_length.to_bits(),
             output.fascicle_velocity.to_bits(),
+            output.relative_force.to_bits(),
             output.status.bits().into(),
         ]
     };
-    let all: Vec<[u32; 4]> = if fes {
+    let all: Vec<[u32; 5]> = if fes {
         let muscle = FesMuscle::<S, 2>::build(&firmware::MUSCLE, step).expect("a muscle");
         let mut state = muscle.rest(first.path_length).expect("a path");
         rest.iter().map(|&input| words(muscle.step(&mut state, input))).collect()
@@ -185,11 +186,11 @@ fn compare(output: &Output) {
     assert!(output.status.success(), "tests/c/golden.c: {}", output.status);
     let expected = inputs().bytes();
     assert_eq!(output.stdout.len(), expected.len());
-    assert_eq!(expected.len(), 4 * 16 * (ROWS - 1));
-    let same = output.stdout.chunks(16).zip(expected.chunks(16)).position(|(a, b)| a != b);
+    assert_eq!(expected.len(), 4 * 20 * (ROWS - 1));
+    let same = output.stdout.chunks(20).zip(expected.chunks(20)).position(|(a, b)| a != b);
     assert_eq!(same, None, "the first tick that differs");
     // The rows are no row of zeros.
-    assert!(expected.chunks(16).filter(|tick| tick[..4] != [0; 4]).count() > ROWS);
+    assert!(expected.chunks(20).filter(|tick| tick[..4] != [0; 4]).count() > ROWS);
 }
 
 #[test]

@@ -18,7 +18,9 @@ bitflags::bitflags! {
         const FREQUENCY_CLIPPED = 1 << 2;
         /// Stimulation frequency was not a number (taken as 0) or infinite (clipped).
         const FREQUENCY_NOT_FINITE = 1 << 3;
-        /// Path length was outside the muscle's range and was clipped.
+        /// Path length was outside the muscle's range and was clipped: shorter than a slack tendon with the
+        /// fascicles at FV's pole, or longer than any activation could hold with n_f still defined, or beyond what
+        /// the arithmetic holds. [`MuscleParams::path_domain`](crate::MuscleParams::path_domain) has the rules.
         const PATH_LENGTH_CLIPPED = 1 << 4;
         /// Path length was not a number (the one before was kept) or infinite (clipped).
         const PATH_LENGTH_NOT_FINITE = 1 << 5;
@@ -92,8 +94,8 @@ pub(crate) struct Domain<S: Scalar> {
     pub(crate) filaments: Range<S>,
     /// The slowest V_max of the types, or the greatest speed there is, L_ce0/s: FV of all types holds above.
     pub(crate) shortening_velocity: S,
-    /// What the state can hold, L_ce0: from the shortest at which the equations hold to where
-    /// the longest path would leave no tendon.
+    /// What the state can hold, L_ce0: from the shortest at which the equations hold to what a muscle at
+    /// rest on the longest path is stretched to, and a little more.
     pub(crate) fascicle_length: Range<S>,
     /// L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
@@ -117,11 +119,12 @@ summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, 
 impl<S: Scalar> Domain<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {
         let filaments = params.fascicle_domain();
-        let longest = params.max_path_length / params.fascicle_length;
+        let paths = params.path_domain_within(S::LONGEST_PATH, S::LARGEST_COEFFICIENT);
+        let longest = params.longest_fascicles(paths.1);
         Self {
             activation: Range::new((0.0, 1.0), S::from_f64),
             stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::quantity),
-            path_length: Range::new(params.path_domain(), S::path_length),
+            path_length: Range::new(paths, S::path_length),
             filaments: Range::new(filaments, S::from_f64),
             shortening_velocity: S::from_f64(Scalar::max(
                 params.shortening_velocity(),

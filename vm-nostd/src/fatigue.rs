@@ -8,6 +8,7 @@
 //! Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is no part of Virtual Muscle: a muscle
 //! that is stepped without it keeps every bit.
 
+use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Range, admit_one};
 use crate::error::{ParameterError, within};
 use crate::muscle::Output;
@@ -68,8 +69,10 @@ pub struct FatigueState<S: Scalar> {
 impl<S: Scalar> FatigueState<S> {
     /// How many words [`words`](Self::words) gives.
     pub const WORDS: usize = 1 + S::SLOW_WORDS;
+    /// How many words it is saved in: whose it is, and all of it.
+    pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
-    /// The bits, for storage and comparison; [`Fatigue::restore`] takes them back.
+    /// The bits, for comparison. For storage [`Fatigue::save`] puts before them whose they are.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         core::iter::once(self.steps.to_bits()).chain(S::slow_words(self.rest))
     }
@@ -116,6 +119,11 @@ pub struct Fatigue<S: Scalar> {
     all: S::Share,
 }
 
+summed!([S: Scalar] Fatigue<S> { activation, frequency, per_saturating_frequency, least_fitness, frequency_dependence, tire, recover, step, all });
+
+/// Tells a saved fatigue from a saved muscle, of which this is no mode.
+const FATIGUE: u32 = 0;
+
 impl<S: Scalar> Fatigue<S> {
     /// Builds fatigue for a time step, or refuses with the name of the field, its value and the limit it
     /// broke.
@@ -140,12 +148,28 @@ impl<S: Scalar> Fatigue<S> {
         FatigueState { steps: S::ONE, rest: S::ZERO.slow() }
     }
 
-    /// A state saved by [`FatigueState::words`], refused unless it is one that a muscle can be in.
+    /// What saved states begin with: it tells coefficients, time steps and arithmetics apart.
+    fn fingerprint(&self) -> u32 {
+        let mut fingerprint = Checksum::EMPTY;
+        [S::ARITHMETIC, FATIGUE].into_iter().for_each(|word| fingerprint.add(word));
+        self.sum(&mut fingerprint);
+        fingerprint.value()
+    }
+
+    /// The words to save a state in, [`FatigueState::SAVED_WORDS`] of them: a fingerprint of parameters, time step
+    /// and arithmetic, and [`FatigueState::words`].
+    pub fn save(&self, state: &FatigueState<S>) -> impl Iterator<Item = S::Bits> {
+        core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
+    }
+
+    /// A state saved by [`Fatigue::save`], refused unless it is of these parameters and time step, and one that a
+    /// muscle can be in.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
     ) -> Result<FatigueState<S>, RestoreError> {
-        let mut saved = Saved::new(words.into_iter(), FatigueState::<S>::WORDS);
+        let length = FatigueState::<S>::SAVED_WORDS;
+        let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
         let share = |value| self.activation.contains(value);
         let steps = saved.number(share)?;
         // A tick may bring more than a step.
@@ -196,6 +220,7 @@ impl<S: Scalar> Output<S> {
     /// The output with the force that a fitness (0..1) leaves of it.
     #[must_use]
     pub fn weakened(self, fitness: S) -> Self {
-        Self { force: fitness.of_share(self.force), ..self }
+        let relative_force = fitness * self.relative_force;
+        Self { force: fitness.of_share(self.force), relative_force, ..self }
     }
 }

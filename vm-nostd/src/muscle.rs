@@ -40,6 +40,8 @@ pub struct Output<S: Scalar> {
     /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. It has no upper bound but the tendon's stiffness: a
     /// path that jumps, as a faulty sensor may, stretches the tendon by all of it.
     pub force: S::Force,
+    /// The same relative to F0, F_se: in fixed point to 6e-8 F0, where `force` is told to 1 mN.
+    pub relative_force: S,
     /// Fascicle length L, L_ce0.
     pub fascicle_length: S,
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
@@ -129,10 +131,14 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         step: TimeStep,
     ) -> Result<Self, ParameterError> {
         params.validate()?;
-        params.validate_magnitudes(step, S::LARGEST_COEFFICIENT)?;
+        params.validate_magnitudes(step, S::LARGEST_COEFFICIENT, S::LONGEST_PATH)?;
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
         let (least, most) = S::MAXIMAL_FORCES;
-        within("mass: F0, N", params.max_isometric_force(), least, most)?;
+        let force = params.max_isometric_force();
+        // A force that was made into a mass comes back rounded.
+        let nearest = Scalar::min(Scalar::max(force, least), most);
+        let rounded = (force - nearest).abs() <= 1e-9 * nearest;
+        within("mass: F0, N", if rounded { nearest } else { force }, least, most)?;
         let elements = &params.elements;
         Ok(Self {
             domain: Domain::new(params),
@@ -196,12 +202,30 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         (self.domain.path_length.least, self.domain.path_length.most)
     }
 
-    /// A state saved by [`State::words`], refused unless it is one this muscle can be in.
+    /// What saved states begin with: it tells muscles apart, their modes, time steps and arithmetics.
+    fn fingerprint(&self) -> u32 {
+        // The time step is in the coefficients; where no bit of them differs, the muscles are the same.
+        let mut fingerprint = Checksum::EMPTY;
+        let words = [S::ARITHMETIC, R::MODE, N as u32, self.checksum()];
+        words.into_iter().for_each(|word| fingerprint.add(word));
+        fingerprint.value()
+    }
+
+    /// The words to save a state of this muscle in, [`State::SAVED_WORDS`] of them: a fingerprint of the muscle,
+    /// its mode, time step and arithmetic, and [`State::words`]. A muscle of other fields or whose memory has lost a
+    /// bit has another fingerprint, but for a chance of 2^-32.
+    pub fn save(&self, state: &State<S, R, N>) -> impl Iterator<Item = S::Bits> {
+        core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
+    }
+
+    /// A state saved by [`Muscle::save`], refused unless it is this muscle's, for this time step, and one it can
+    /// be in.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
     ) -> Result<State<S, R, N>, RestoreError> {
-        let mut saved = Saved::new(words.into_iter(), State::<S, R, N>::WORDS);
+        let length = State::<S, R, N>::SAVED_WORDS;
+        let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
         let tendon_extension = saved.number(S::is_finite)?;
         let speeds = &self.domain.fascicle_velocity;
         let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
@@ -210,7 +234,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (nearest, _) = self.domain.fascicle_length.clip(length);
         // A length that was stopped at a limit comes back with the rounding of its extension.
         if (length - nearest).abs() > S::from_f64(1e-4) {
-            return Err(RestoreError::Value { word: 0 });
+            return Err(RestoreError::Value { word: 1 });
         }
         let mut yieldings = [S::ONE.slow(); N];
         for (kept, fiber) in yieldings.iter_mut().zip(&self.fibers) {
@@ -224,8 +248,10 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// The state as an output, as it was after the tick that left it: force, length, velocity.
     pub fn observe(&self, state: &State<S, R, N>) -> Output<S> {
         let tendon = &self.contraction.tendon;
+        let relative_force = tendon.pull(state.tendon_extension).force;
         Output {
-            force: tendon.pull(state.tendon_extension).force.force(&self.force),
+            force: relative_force.force(&self.force),
+            relative_force,
             fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
             fascicle_velocity: state.fascicle_velocity,
             status: Status::empty(),
@@ -286,6 +312,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
         Output {
             force: tendon_pull.force.force(&self.force),
+            relative_force: tendon_pull.force,
             fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
             fascicle_velocity: state.fascicle_velocity,
             status,

@@ -2,13 +2,14 @@
 
 use crate::activation::ActivationParams;
 use crate::contraction::largest_inertia;
-use crate::domain::MAXIMUM_STIMULATION_FREQUENCY;
+use crate::domain::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
 use crate::error::{Limit, ParameterError, within};
 use crate::excitation::ExcitationParams;
 use crate::force_length::ForceLengthParams;
 use crate::force_velocity::ForceVelocityParams;
 use crate::passive::{CompressionParams, ParallelParams};
 use crate::sag::SagParams;
+use crate::scalar::Scalar;
 use crate::tendon::TendonParams;
 use crate::time_step::TimeStep;
 use crate::yielding::YieldParams;
@@ -109,14 +110,15 @@ impl ElementParams {
     ))
 )]
 pub struct MuscleParams<const N: usize> {
-    /// Mass m, kg; 1e-5 to 20. It makes the cross section, and with it F0, and half of it moves.
+    /// Mass m, kg; 1e-5 to 30. It makes the cross section, and with it F0, and half of it moves.
     pub mass: f64,
     /// Optimal fascicle length L_ce0, m; 0.005 to 1.
     pub fascicle_length: f64,
-    /// Optimal tendon length L_se0, m; 0.001 to 2.
+    /// Optimal tendon length L_se0, m; 0.0005 to 2.
     pub tendon_length: f64,
     /// Longest musculotendon path L_mt_max, m; such that
-    /// [`MuscleParams::maximum_fascicle_length`] is 0.8 to 2.
+    /// [`MuscleParams::maximum_fascicle_length`] is 0.8 to 2. It scales the parallel elastic element; paths may
+    /// be longer, see [`MuscleParams::path_domain`].
     pub max_path_length: f64,
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
@@ -135,13 +137,19 @@ const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
 const LEAST_PATH_RANGE: f64 = 0.1;
 /// Fascicle lengths outside of which no type is evaluated, L_ce0.
 pub(crate) const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
+/// Fascicles that ring may be longer by this than those of a muscle at rest on the longest path, L_ce0.
+const RINGING_ROOM: f64 = 0.25;
+/// Halvings that bring a length to the last bits of `f64`.
+const HALVINGS: usize = 60;
 /// Fields that are refused for what follows from them.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Fields that fixed point refuses for what follows from them.
 const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
+const PARALLEL: &str = "parallel.stiffness: force of the longest fascicles, F0";
+const PARALLEL_TOE: &str = "parallel.toe: longest fascicles beyond slack, toes";
 const TOE_FORCE: &str = "tendon.toe: stiffness times toe, F0";
-/// The force that a tendon must be able to carry, F0.
+/// The force that a tendon must be able to carry, F0. The domain of paths ends where fascicles pull more.
 const LEAST_FORCE: f64 = 10.0;
 const REACH: &str = "max_path_length: range of the path, L_ce0";
 const LONGEST_LENGTH: &str = "activation.length_dependence: longest length (L_ce0) with n_f >= 0.2";
@@ -180,19 +188,65 @@ impl<const N: usize> MuscleParams<N> {
     }
 
     /// Path lengths, in m, that are taken as they are; others are saturated and flagged.
-    /// The shortest is where the tendon is slack with the fascicles at their shortest.
+    ///
+    /// On the shortest the tendon is slack with the fascicles at the shortest of
+    /// [`fascicle_domain`](Self::fascicle_domain), where FV would have a pole. On the longest the fascicles are at
+    /// its longest, where n_f is 0.2, and pull with F0 on top of their passive force: on a longer path no activation
+    /// keeps them inside. Where the passive force would be more than 9 F0 the longest path ends at that force, as far
+    /// as every arithmetic holds a tendon's; and it is at least `max_path_length`. In fixed point it may end earlier,
+    /// where lengths do: [`Muscle::path_length_range`](crate::Muscle::path_length_range).
     pub fn path_domain(&self) -> (f64, f64) {
+        let tendon = &self.elements.tendon;
         let shortest = self.fascicle_domain().0 * self.fascicle_length
-            + self.elements.tendon.slack_length * self.tendon_length;
-        (shortest, self.max_path_length)
+            + tendon.slack_length * self.tendon_length;
+        let parallel = &self.elements.parallel;
+        let maximum = self.maximum_fascicle_length();
+        let most_passive = parallel.length_at(LEAST_FORCE - 1.0) * maximum;
+        let fascicles = Scalar::min(self.fascicle_domain().1, most_passive);
+        let force = parallel.force(fascicles / maximum) + 1.0;
+        let longest =
+            fascicles * self.fascicle_length + tendon.length_at(force) * self.tendon_length;
+        (shortest, Scalar::max(longest, self.max_path_length))
+    }
+
+    /// The middle between the shortest path and `max_path_length`, m.
+    pub fn middle_path(&self) -> f64 {
+        0.5 * (self.path_domain().0 + self.max_path_length)
+    }
+
+    /// The path domain (m) in an arithmetic that holds paths up to `longest_path` (m) and lengths up to `largest`
+    /// (L_ce0).
+    pub(crate) fn path_domain_within(&self, longest_path: f64, largest: f64) -> (f64, f64) {
+        let (shortest, longest) = self.path_domain();
+        let most = Scalar::min(longest_path, shortest + largest * self.fascicle_length);
+        (shortest, Scalar::min(longest, most))
+    }
+
+    /// The longest that fascicles may be on paths up to `longest` (m), in L_ce0: those of a muscle at rest, and what
+    /// ringing adds; but not so long that no tendon is left.
+    pub(crate) fn longest_fascicles(&self, longest: f64) -> f64 {
+        let parallel = &self.elements.parallel;
+        let maximum = self.maximum_fascicle_length();
+        let none_left = longest / self.fascicle_length;
+        let (mut least, mut most) = (0.0, none_left);
+        for _ in 0..HALVINGS {
+            let length = 0.5 * (least + most);
+            let tendon = (longest - length * self.fascicle_length) / self.tendon_length;
+            if self.elements.tendon.force(tendon) > parallel.force(length / maximum) {
+                least = length;
+            } else {
+                most = length;
+            }
+        }
+        Scalar::min(most + RINGING_ROOM, none_left)
     }
 
     /// Whether a muscle can be built from these parameters; the error names the field, its
     /// value and the limit it broke.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        within("mass", self.mass, 1e-5, 20.0)?;
+        within("mass", self.mass, 1e-5, 30.0)?;
         within("fascicle_length", self.fascicle_length, 5e-3, 1.0)?;
-        within("tendon_length", self.tendon_length, 1e-3, 2.0)?;
+        within("tendon_length", self.tendon_length, 5e-4, 2.0)?;
         within("recruitment_saturation", self.recruitment_saturation, 0.01, 1.0)?;
         self.elements.validate()?;
         self.validate_fibers()?;
@@ -222,6 +276,7 @@ impl<const N: usize> MuscleParams<N> {
         &self,
         step: TimeStep,
         largest: f64,
+        longest_path: f64,
     ) -> Result<(), ParameterError> {
         let (shortest, longest) = self.fascicle_domain();
         within(INERTIA, largest_inertia(self, step), 0.0, largest)?;
@@ -231,13 +286,22 @@ impl<const N: usize> MuscleParams<N> {
         // So many widths of the toe can be told; less force than this would not do.
         let toe_force = tendon.stiffness * tendon.toe;
         within(TOE_FORCE, toe_force, LEAST_FORCE / (2.0 * largest), f64::MAX)?;
-        // A path reaches this far where no tendon is left.
-        let reach = self.max_path_length / self.fascicle_length;
-        within(REACH, reach - self.path_domain().0 / self.fascicle_length, 0.0, largest)?;
-        let parallel = self.elements.parallel.force(reach / self.maximum_fascicle_length());
-        within("parallel.stiffness: force on the longest path, F0", parallel, 0.0, largest)?;
+        let reach = (self.max_path_length - self.path_domain().0) / self.fascicle_length;
+        within(REACH, reach, 0.0, largest)?;
+        // The state holds no longer fascicles, whatever the path does.
+        let (_, longest_path) = self.path_domain_within(longest_path, largest);
+        let parallel = &self.elements.parallel;
+        let stretch = self.longest_fascicles(longest_path) / self.maximum_fascicle_length();
+        within(PARALLEL, parallel.force(stretch), 0.0, largest)?;
+        let toes = (stretch - parallel.slack_length) / parallel.toe;
+        within(PARALLEL_TOE, toes, f64::MIN, 2.0 * largest)?;
+        // The mechanics take it where the tick starts, on a line through its middle: at the greatest speed half a
+        // tick further on. Until there no sum of it saturates; what it is added to is no more than a few F0, so
+        // that what is negative stays so, and the fascicles then pull with nothing.
         let compression = self.elements.compression.force(shortest);
-        within(COMPRESSION, compression, -largest / 4.0, 0.0)?;
+        let steepness = self.elements.compression.steepness;
+        let extrapolated = 1.0 - 0.5 * steepness * MAXIMUM_SPEED * step.seconds();
+        within(COMPRESSION, compression, -2.0 * largest / extrapolated, 0.0)?;
         self.each_fiber(|t| {
             let frequency = MAXIMUM_STIMULATION_FREQUENCY / t.half_force_frequency;
             // Added to nothing, it may be as large as two coefficients.

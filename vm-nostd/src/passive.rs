@@ -3,6 +3,7 @@
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::tendon::softplus_inverse;
 use crate::time_step::TimeStep;
 
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
@@ -53,6 +54,11 @@ impl ParallelParams {
     /// F_pe1 in F0 at V = 0 for a fascicle length in L_max.
     pub(crate) fn force(&self, length: f64) -> f64 {
         self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
+    }
+
+    /// The fascicle length, in L_max, at which F_pe1 is `force` (F0, more than 0) at V = 0.
+    pub(crate) fn length_at(&self, force: f64) -> f64 {
+        self.slack_length + self.toe * softplus_inverse(force / (self.stiffness * self.toe))
     }
 }
 

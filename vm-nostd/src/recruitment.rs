@@ -29,6 +29,9 @@ use core::fmt::Debug;
 pub trait Recruitment<S: Scalar, const N: usize>:
     Sealed + Copy + Debug + PartialEq + 'static
 {
+    /// Tells modes apart in a saved state.
+    #[doc(hidden)]
+    const MODE: u32;
     /// What there is to say of a muscle in this mode besides its parameters.
     type Units;
     #[doc(hidden)]

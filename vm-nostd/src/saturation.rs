@@ -11,8 +11,8 @@ use crate::recruitment::{
 use crate::scalar::Scalar;
 use crate::scalar::fixed::{Fixed, saturations};
 use crate::{
-    ContinuousMuscle, ElementParams, FiberParams, FiberType, Input, Muscle, MuscleParams, Status,
-    TimeStep, feline_vm4, human_vm4, paper_table_1,
+    ElementParams, FiberParams, FiberType, Input, Muscle, MuscleParams, Status, TimeStep,
+    feline_vm4, human_vm4, paper_table_1,
 };
 
 /// Always the same numbers, 0 to 1.
@@ -26,14 +26,27 @@ impl Chance {
 }
 
 fn muscles() -> Vec<MuscleParams<2>> {
-    let sets: [(ElementParams, [FiberType; 2]); 4] = [
+    let sets: [(ElementParams, [FiberType; 2]); 7] = [
         (paper_table_1::ELEMENTS, [paper_table_1::SLOW, paper_table_1::FAST]),
         (human_vm4::ELEMENTS, [human_vm4::SUPER_SLOW, human_vm4::FAST]),
         (human_vm4::ELEMENTS, [human_vm4::SLOW, human_vm4::FAST]),
         (feline_vm4::ELEMENTS, [feline_vm4::SLOW, feline_vm4::FAST]),
+        // Types alone: without a fast one, fascicles may be so short that their filaments are compressed most.
+        (human_vm4::ELEMENTS, [human_vm4::SLOW; 2]),
+        (feline_vm4::ELEMENTS, [feline_vm4::SUPER_SLOW; 2]),
+        (feline_vm4::ELEMENTS, [feline_vm4::SLOW; 2]),
     ];
-    // Mass (kg), fascicles and tendon (m): a shoulder, a hand, a calf, a neck.
-    let sizes = [(0.0975, 0.11, 0.02), (4e-3, 0.032, 0.06), (0.3, 0.05, 0.25), (0.02, 0.08, 0.04)];
+    // Mass (kg), fascicles and tendon (m): a shoulder, a hand, a calf, a neck; and the ends of what is published.
+    let sizes = [
+        (0.0975, 0.11, 0.02),
+        (4e-3, 0.032, 0.06),
+        (0.3, 0.05, 0.25),
+        (0.02, 0.08, 0.04),
+        (0.05, 0.05, 0.6),
+        (20.0, 0.5, 0.025),
+        (0.5, 0.5, 2.0),
+        (1e-4, 0.015, 0.00075),
+    ];
     let all = sets.into_iter().flat_map(|set| sizes.map(|size| (set, size)));
     all.map(|((elements, [slow, fast]), (mass, fascicle_length, tendon_length))| MuscleParams {
         mass,
@@ -82,12 +95,7 @@ fn unflagged<R: Recruitment<Fixed, 2>>(params: &MuscleParams<2>, units: &R::Unit
 
 #[test]
 fn nothing_saturates_in_a_tick_without_a_flag() {
-    // Fixed point refuses some: a stiff parallel element on a long tendon.
-    let step = TimeStep::MILLISECOND;
-    let mut muscles = muscles();
-    muscles.retain(|params| ContinuousMuscle::<Fixed, 2>::build(params, step).is_ok());
-    assert!(muscles.len() >= 8, "{}", muscles.len());
-    for (index, params) in muscles.iter().enumerate() {
+    for (index, params) in muscles().iter().enumerate() {
         let units = MotorUnits::<6>::new(params, [UnitSizes::Default(3); 2]).expect("valid");
         let found = [
             unflagged::<NaturalContinuous>(params, &()),
@@ -96,8 +104,9 @@ fn nothing_saturates_in_a_tick_without_a_flag() {
         ];
         for (mode, (saturated, silent)) in found.into_iter().enumerate() {
             assert!(saturated == 0, "muscle {index}, mode {mode}: {saturated} of {silent} ticks");
+            // Of 6,000; on the longest paths fascicles are outside their domain unless they are active, and said to be.
             assert!(
-                silent > 5000,
+                silent > 2000,
                 "muscle {index}, mode {mode}: only {silent} ticks without a flag"
             );
         }

@@ -39,7 +39,7 @@ pub trait Scalar:
     + 'static
 {
     /// A word of a saved state.
-    type Bits: Copy + Debug + Eq + Into<u64> + Summed;
+    type Bits: Copy + Debug + Eq + From<u32> + Into<u64> + Summed;
     /// A constant to multiply with, of any magnitude.
     type Factor: Copy + Debug + Summed;
     /// A value that a lag moves, by less in a tick than the number itself may resolve.
@@ -54,6 +54,9 @@ pub trait Scalar:
     /// A tendon force: N in floating point, mN in fixed point.
     type Force: Copy + Debug + PartialEq + PartialOrd + Summed;
 
+    /// Tells arithmetics apart in a saved state.
+    #[doc(hidden)]
+    const ARITHMETIC: u32;
     /// 0.
     const ZERO: Self;
     /// 1.
@@ -66,6 +69,8 @@ pub trait Scalar:
     const LARGEST_COEFFICIENT: f64;
     /// The least and the greatest maximal isometric force that outputs can resolve and hold, N.
     const MAXIMAL_FORCES: (f64, f64);
+    /// The step that forces are told in, N.
+    const FORCE_STEP: f64;
     /// The longest path that can be held, m.
     const LONGEST_PATH: f64;
     /// Words of a [`Slow`](Scalar::Slow) in a saved state.
@@ -197,6 +202,8 @@ pub trait Scalar:
     fn force_bits(force: Self::Force) -> Self::Bits;
     /// A force in N, exactly or as nearly as `f64` has it.
     fn newtons(force: Self::Force) -> f64;
+    /// The same of a muscle whose F0 is `newtons`, by that of `force` and `relative_force` which is finer.
+    fn newtons_of(force: Self::Force, relative_force: Self, newtons: f64) -> f64;
 
     /// The smaller of two ordered values; `other` where `self` is not-a-number.
     #[must_use]

@@ -8,7 +8,8 @@ use core::fmt;
 
 /// The state of a muscle of `N` fibre types recruited as `R` says, plain data: copy it to save it.
 ///
-/// [`words`](Self::words) gives its bits, for storage and comparison, and
+/// [`words`](Self::words) gives its bits, for comparison. For storage
+/// [`Muscle::save`](crate::Muscle::save) puts before them whose they are, and
 /// [`Muscle::restore`](crate::Muscle::restore) takes them back after checking them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
@@ -27,10 +28,18 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RestoreError {
-    /// There were not as many words as the state has.
+    /// There were not as many words as a saved state has.
     Length {
         /// How many it has.
         expected: usize,
+    },
+    /// They were saved by another muscle, or for another mode, time step or arithmetic; or one whose
+    /// coefficients have lost a bit since.
+    OtherMuscle {
+        /// The fingerprint they begin with.
+        saved: u64,
+        /// That of the muscle they were given to.
+        expected: u32,
     },
     /// A word does not hold a value that the muscle can be in.
     Value {
@@ -43,6 +52,11 @@ impl fmt::Display for RestoreError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length { expected } => write!(f, "a saved state has {expected} words"),
+            Self::OtherMuscle { saved, expected } => write!(
+                f,
+                "the state was saved by another muscle or for another time step: fingerprint \
+                 {saved:08x}, not {expected:08x}"
+            ),
             Self::Value { word } => {
                 write!(f, "word {word} of the saved state is outside the muscle's range")
             }
@@ -53,8 +67,10 @@ impl fmt::Display for RestoreError {
 impl core::error::Error for RestoreError {}
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
-    /// How many words the state is saved in.
+    /// How many words [`words`](Self::words) gives.
     pub const WORDS: usize = 3 + N * S::SLOW_WORDS + R::State::WORDS;
+    /// How many words the state is saved in: whose it is, and all of it.
+    pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
     pub fn fascicle_velocity(&self) -> S {
@@ -106,8 +122,18 @@ pub struct Saved<I> {
 }
 
 impl<I: Iterator> Saved<I> {
-    pub(crate) fn new(words: I, expected: usize) -> Self {
-        Self { words, count: 0, expected }
+    /// Words of which there should be so many, the first of them a `fingerprint`.
+    pub(crate) fn new(words: I, expected: usize, fingerprint: u32) -> Result<Self, RestoreError>
+    where
+        I: Iterator<Item: Eq + From<u32> + Into<u64> + Copy>,
+    {
+        let mut saved = Self { words, count: 1, expected };
+        let first = saved.words.next().ok_or_else(|| saved.length())?;
+        if first != I::Item::from(fingerprint) {
+            let expected = fingerprint;
+            return Err(RestoreError::OtherMuscle { saved: first.into(), expected });
+        }
+        Ok(saved)
     }
 
     /// Refuses words that are left.

@@ -35,6 +35,8 @@ pub struct SteadyFes<S: Scalar, const N: usize> {
     tendon_inverse: TendonInverse<S>,
     firing: S,
     rounding: S,
+    /// The same for a force in N or mN, which may be half a step beyond.
+    rounding_of_force: S,
     promised: S,
     /// More than one balance cannot be ruled out.
     ambiguous: bool,
@@ -61,6 +63,8 @@ pub struct Steady<S: Scalar> {
     pub activation: S,
     /// The tendon's force, N (in fixed point: mN).
     pub force: S::Force,
+    /// The same relative to F0: in fixed point to 6e-8 F0.
+    pub relative_force: S,
     /// L, L_ce0.
     pub fascicle_length: S,
     /// What had to be saturated; [`Status::FORCE_UNREACHABLE`] where no activation holds the wanted force.
@@ -127,6 +131,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             tendon_inverse: TendonInverse::new(&elements.tendon, fascicle, tendon),
             firing: S::from_f64(SagParams::FIRING),
             rounding: S::from_f64(ROUNDING),
+            rounding_of_force: S::from_f64(ROUNDING + 0.5 * S::FORCE_STEP / newtons),
             promised: S::from_f64(PROMISED),
             ambiguous: tendon > LONGEST_PLAIN_TENDON * fascicle,
             force: S::force_factor(newtons),
@@ -150,23 +155,45 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         path_length: S::PathLength,
         stimulation_frequency: S::Quantity,
     ) -> Steady<S> {
+        let wanted = S::of_force(force, &self.per_force);
+        let rounding = self.rounding_of_force;
+        self.holding(wanted, rounding, path_length, stimulation_frequency)
+    }
+
+    /// The same for a force relative to F0: in fixed point finer than in mN, where F0 is a few newtons.
+    pub fn activation_for_relative(
+        &self,
+        wanted: S,
+        path_length: S::PathLength,
+        stimulation_frequency: S::Quantity,
+    ) -> Steady<S> {
+        self.holding(wanted, self.rounding, path_length, stimulation_frequency)
+    }
+
+    /// What holds a force (F0); one that is beyond what can be held by `rounding` counts as held.
+    fn holding(
+        &self,
+        wanted: S,
+        rounding: S,
+        path_length: S::PathLength,
+        stimulation_frequency: S::Quantity,
+    ) -> Steady<S> {
         let input = Input { activation: S::ONE, path_length, stimulation_frequency };
         let (input, status) = self.domain.admit(input, self.domain.path_length.most);
-        let wanted = S::of_force(force, &self.per_force);
         match self.balanced(wanted, &input, status) {
             Some(found) if !self.ambiguous => found,
             Some(found) => {
                 let held = self.settled(Input { activation: found.activation, ..input }, status);
-                let error = (S::of_force(held.force, &self.per_force) - wanted).abs();
+                let error = (held.relative_force - wanted).abs();
                 held.unreachable(error > self.promised)
             }
             None => {
                 let none = self.settled(Input { activation: S::ZERO, ..input }, status);
                 let all = self.settled(input, status);
-                let [least, most] = [none, all].map(|end| S::of_force(end.force, &self.per_force));
+                let [least, most] = [none, all].map(|end| end.relative_force);
                 let (end, reached) =
                     if wanted - least > most - wanted { (all, most) } else { (none, least) };
-                let near = (wanted - reached).abs() <= self.rounding;
+                let near = (wanted - reached).abs() <= rounding;
                 end.unreachable(!near)
             }
         }
@@ -196,6 +223,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         Steady {
             activation,
             force: balance.tendon.force(&self.force),
+            relative_force: balance.tendon,
             fascicle_length: balance.fascicle_length,
             status,
         }

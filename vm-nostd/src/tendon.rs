@@ -30,10 +30,18 @@ impl TendonParams {
 
     /// The tendon length, in L_se0, that carries `force` (F0, more than 0).
     pub(crate) fn length_at(&self, force: f64) -> f64 {
-        // ln(exp(x) - 1), without overflow.
-        let x = force / (self.stiffness * self.toe);
-        self.toe * (x + Scalar::ln(one_minus_exp(x))) + self.slack_length
+        self.toe * softplus_inverse(force / (self.stiffness * self.toe)) + self.slack_length
     }
+
+    /// F_se in F0 for a tendon length in L_se0.
+    pub(crate) fn force(&self, length: f64) -> f64 {
+        self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
+    }
+}
+
+/// ln(exp(x) - 1) for x more than 0, without overflow.
+pub(crate) fn softplus_inverse(x: f64) -> f64 {
+    x + Scalar::ln(one_minus_exp(x))
 }
 
 /// The tendon of one muscle. Its extension beyond slack is counted in L_ce0, as lengths of the

@@ -70,8 +70,8 @@ fn muscle_at_rest<S: Arithmetic, R: Recruitment<S, 2>>(
     let muscle = Muscle::<S, R, 2>::build_with_units(&params, units, TimeStep::MILLISECOND).ok()?;
     let state = muscle.rest(S::path_length(black_box(Scenario::RESTING_PATH).into())).ok()?;
     let mut words = [0; 128];
-    words.iter_mut().zip(state.words()).for_each(|(place, word)| *place = word);
-    let length = State::<S, R, 2>::WORDS;
+    words.iter_mut().zip(muscle.save(&state)).for_each(|(place, word)| *place = word);
+    let length = State::<S, R, 2>::SAVED_WORDS;
     let state = muscle.restore(black_box(words).into_iter().take(length)).ok()?;
     Some((muscle, state))
 }

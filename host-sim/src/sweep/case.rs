@@ -2,6 +2,7 @@
 
 use super::space::KEYS;
 use crate::engine::{self, Arithmetic};
+use crate::link;
 use crate::metrics::{ForceError, forces};
 use crate::muscle_file;
 use crate::reference::{Input, Mode, Muscle};
@@ -71,6 +72,8 @@ impl Case {
         let middle = tendon * 1e-2 + self.value("path_l0") * fascicle;
         let swing = speed / (TAU * path_hz) * fascicle;
         let time_step = self.value("tick_ms") * 1e-3;
+        // The path ends where the muscle's domain does.
+        let end = self.muscle().map_or(longest * 1e-2, |muscle| link::path_domain(&muscle).1);
         let input = |tick: usize| {
             let time = tick as f64 * time_step;
             let activation = 0.5 * (from + to) + 0.5 * (from - to) * (TAU * hz * time).cos();
@@ -78,7 +81,7 @@ impl Case {
             let path = middle + swing * begun * begun * (TAU * path_hz * time).sin();
             Input {
                 activation,
-                path_length: path.min(longest * 1e-2),
+                path_length: path.min(end),
                 stimulation_frequency: self.value("stim_hz"),
             }
         };

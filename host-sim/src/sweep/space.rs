@@ -35,7 +35,7 @@ const fn key(
 
 /// All that varies: the muscle, then what it is made to do.
 pub const KEYS: [Key; 14] = [
-    key("mass_g", 97.5, (2.0, 1000.0), (0.01, 20e3), true),
+    key("mass_g", 97.5, (2.0, 1000.0), (0.01, 30e3), true),
     key("fascicle_length_cm", 11.0, (2.0, 30.0), (0.5, 100.0), true),
     // L_se0/L_ce0, and the longest fascicles, L_ce0.
     key("tendon_ratio", 0.18, (0.1, 5.0), (0.01, 50.0), true),

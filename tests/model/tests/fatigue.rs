@@ -2,7 +2,7 @@
 
 use model_tests::muscles::config;
 use proptest::prelude::*;
-use vm_nostd::{Fatigue, FatigueParams, FatigueState, Fixed, Scalar, TimeStep};
+use vm_nostd::{Fatigue, FatigueParams, FatigueState, Fixed, RestoreError, Scalar, TimeStep};
 
 /// fit after `time` (s) from rest at a constant activation and frequency (pps).
 fn exact(p: &FatigueParams, time: f64, activation: f64, frequency: f64) -> f64 {
@@ -95,8 +95,8 @@ fn saved<S: Scalar>() {
     for _ in 0..5_000 {
         fatigue.advance(&mut state, S::ONE, f);
     }
-    let words: Vec<S::Bits> = state.words().collect();
-    assert_eq!(words.len(), FatigueState::<S>::WORDS);
+    let words: Vec<S::Bits> = fatigue.save(&state).collect();
+    assert_eq!(words.len(), FatigueState::<S>::SAVED_WORDS);
     let mut restored = fatigue.restore(words.iter().copied()).expect("what a tick left behind");
     for _ in 0..1_000 {
         assert_eq!(
@@ -106,14 +106,25 @@ fn saved<S: Scalar>() {
     }
     assert_eq!(state, restored);
     assert!(fatigue.restore(words[1..].iter().copied()).is_err());
-    let beyond = [S::from_f64(1.5).to_bits()].into_iter().chain(words[1..].iter().copied());
-    assert!(fatigue.restore(beyond).is_err());
+    let mut beyond = words.clone();
+    beyond[1] = S::from_f64(1.5).to_bits();
+    assert_eq!(fatigue.restore(beyond), Err(RestoreError::Value { word: 1 }));
+
+    // Nor is it another fatigue's, or for another time step.
+    let other = FatigueParams { recovery_time: 31.0, ..FatigueParams::QUADRICEPS };
+    let half = TimeStep::from_seconds(0.5e-3).expect("a step");
+    for (params, step) in [(other, TimeStep::MILLISECOND), (FatigueParams::QUADRICEPS, half)] {
+        let fatigue = Fatigue::<S>::build(&params, step).expect("a muscle that tires");
+        let refused = fatigue.restore(words.iter().copied()).expect_err("another one's");
+        assert!(matches!(refused, RestoreError::OtherMuscle { .. }), "{refused}");
+    }
 }
 
 #[test]
 fn a_saved_state_goes_on_as_it_was() {
     saved::<f32>();
     saved::<Fixed>();
+    saved::<f64>();
 }
 
 #[test]

@@ -144,8 +144,8 @@ fn takes_any_bits<R: AnyMode<Fixed>>(
         for _ in 0..25 {
             let output = muscle.step(&mut state, input);
             assert!(output.force >= 0, "{output:?}");
-            let saved: Vec<u32> = state.words().collect();
-            assert_eq!(saved.len(), State::<Fixed, R, 2>::WORDS);
+            let saved: Vec<u32> = muscle.save(&state).collect();
+            assert_eq!(saved.len(), State::<Fixed, R, 2>::SAVED_WORDS);
             let restored = muscle.restore(saved).expect("a state that a tick left");
             assert_eq!(restored, state);
         }
@@ -233,21 +233,21 @@ proptest! {
 fn states_that_no_tick_leaves_are_refused() {
     let muscle = FesMuscle::<Fixed, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
     let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
-    let saved: Vec<u32> = state.words().collect();
+    let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
-    // Words 3 and 4 are Y of the slow type, which yields and does not sag, 7 and 8 U_eff, and 9 to 15 the
-    // rest of that type; lags have two, the higher one second.
+    // Word 0 says whose they are. Words 4 and 5 are Y of the slow type, which yields and does not sag, 8 and 9
+    // U_eff, and 10 to 16 the rest of that type; lags have two, the higher one second.
     for (word, value) in [
-        (0, 0x8000_0000), // extension -128
-        (0, whole(129)),  // extension -127
-        (1, whole(61)),   // velocity
-        (2, 0x7FFF_FFFF), // path of 4.19 m
-        (4, 0),           // Y below 1 - c_Y
-        (8, whole(1)),    // U_eff under FES
-        (10, whole(2)),   // f_int above 1 under FES
-        (12, whole(100)), // f_eff
-        (14, whole(100)), // S of a type without sag
-        (15, whole(2)),   // Af
+        (1, 0x8000_0000), // extension -128
+        (1, whole(129)),  // extension -127
+        (2, whole(61)),   // velocity
+        (3, 0x7FFF_FFFF), // path of 4.19 m
+        (5, 0),           // Y below 1 - c_Y
+        (9, whole(1)),    // U_eff under FES
+        (11, whole(2)),   // f_int above 1 under FES
+        (13, whole(100)), // f_eff
+        (15, whole(100)), // S of a type without sag
+        (16, whole(2)),   // Af
     ] {
         let mut words = saved.clone();
         words[word] = value;
@@ -279,6 +279,18 @@ fn muscles_that_fixed_point_cannot_hold_are_refused_by_name() {
     assert!(message.contains("tendon.stiffness"), "{message}");
     let message = refused(|p| p.mass = 1e-4);
     assert!(message.contains("mass: F0") && message.contains('1'), "{message}");
-    let message = refused(|p| p.elements.compression.strength = -1.0);
+    let message = refused(|p| {
+        (p.elements.compression.strength, p.elements.compression.steepness) = (-1.0, -30.0);
+    });
     assert!(message.contains("compression.strength"), "{message}");
+    let message = refused(|p| {
+        p.elements.parallel.stiffness = 200.0;
+        p.max_path_length = 0.11;
+    });
+    assert!(message.contains("parallel.stiffness: force of the longest"), "{message}");
+    let message = refused(|p| {
+        (p.elements.parallel.stiffness, p.elements.parallel.toe) = (1.0, 0.01);
+        (p.elements.parallel.slack_length, p.max_path_length) = (0.8, 0.12);
+    });
+    assert!(message.contains("parallel.toe: longest fascicles"), "{message}");
 }

@@ -42,7 +42,7 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 /**
  * Words of its saved state.
  */
-#define VM_F32_STATE_WORDS 14
+#define VM_F32_STATE_WORDS 15
 
 /**
  * Bytes of a VmMuscleFixed.
@@ -52,7 +52,7 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 /**
  * Words of its saved state.
  */
-#define VM_FIXED_STATE_WORDS 23
+#define VM_FIXED_STATE_WORDS 24
 
 /**
  * Bytes of VmError's field, its final 0 included.
@@ -147,6 +147,10 @@ typedef enum {
    * These words are no state of this muscle.
    */
   VM_RESULT_STATE = 5,
+  /**
+   * These words were saved by another muscle, or for another mode or time step.
+   */
+  VM_RESULT_OTHER_MUSCLE = 6,
 } VmResult;
 
 /**
@@ -336,7 +340,7 @@ typedef struct {
  */
 typedef struct {
   /**
-   * Mass, kg; 1e-5 to 20.
+   * Mass, kg; 1e-5 to 30.
    */
   double mass_kg;
   /**
@@ -344,11 +348,11 @@ typedef struct {
    */
   double fascicle_length_m;
   /**
-   * Optimal tendon length L_se0, m; 0.001 to 2.
+   * Optimal tendon length L_se0, m; 0.0005 to 2.
    */
   double tendon_length_m;
   /**
-   * Longest musculotendon path, m.
+   * Longest musculotendon path L_mt_max, m: it scales the parallel elastic element, and paths may be longer.
    */
   double max_path_length_m;
   /**
@@ -426,6 +430,10 @@ typedef struct {
    */
   float fascicle_velocity;
   /**
+   * Tendon force relative to F0.
+   */
+  float relative_force;
+  /**
    * What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
    */
   uint16_t status;
@@ -476,6 +484,10 @@ typedef struct {
    */
   int32_t fascicle_velocity;
   /**
+   * Tendon force relative to F0, 2^-24 F0: finer than mN where F0 is below 16,777 N.
+   */
+  int32_t relative_force;
+  /**
    * What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
    */
   uint16_t status;
@@ -519,14 +531,16 @@ VmResult vm_f32_step(VmMuscleF32 *muscle,
                      VmOutputF32 *output);
 
 /**
- * Saves a muscle's state.
+ * Saves a muscle's state, and which muscle, mode and time step it is of.
  */
 VmResult vm_f32_save(const VmMuscleF32 *muscle, VmStateF32 *saved);
 
 /**
- * Restores a state that was saved; VM_RESULT_STATE, and no change, if this muscle cannot be in it.
+ * Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
+ * if this muscle cannot be in it, and then no change.
  */
-VmResult vm_f32_restore(VmMuscleF32 *muscle, const VmStateF32 *saved);
+VmResult vm_f32_restore(VmMuscleF32 *muscle,
+                        const VmStateF32 *saved);
 
 /**
  * Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick:
@@ -560,14 +574,16 @@ VmResult vm_fixed_step(VmMuscleFixed *muscle,
                        VmOutputFixed *output);
 
 /**
- * Saves a muscle's state.
+ * Saves a muscle's state, and which muscle, mode and time step it is of.
  */
 VmResult vm_fixed_save(const VmMuscleFixed *muscle, VmStateFixed *saved);
 
 /**
- * Restores a state that was saved; VM_RESULT_STATE, and no change, if this muscle cannot be in it.
+ * Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
+ * if this muscle cannot be in it, and then no change.
  */
-VmResult vm_fixed_restore(VmMuscleFixed *muscle, const VmStateFixed *saved);
+VmResult vm_fixed_restore(VmMuscleFixed *muscle,
+                          const VmStateFixed *saved);
 
 /**
  * Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick:

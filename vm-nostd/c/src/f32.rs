@@ -9,7 +9,7 @@ use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Input, TimeStep};
 /// Bytes of a VmMuscleF32.
 pub const VM_MUSCLE_F32_SIZE: usize = 568;
 /// Words of its saved state.
-pub const VM_F32_STATE_WORDS: usize = 14;
+pub const VM_F32_STATE_WORDS: usize = 15;
 
 /// A muscle computed in float.
 pub type VmMuscleF32 = Slot<f32, 0x564D_4633>;
@@ -40,6 +40,8 @@ pub struct VmOutputF32 {
     pub fascicle_length: f32,
     /// Fascicle velocity, L_ce0/s, positive when lengthening.
     pub fascicle_velocity: f32,
+    /// Tendon force relative to F0.
+    pub relative_force: f32,
     /// What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
     pub status: u16,
 }
@@ -70,8 +72,7 @@ pub extern "C" fn vm_f32_build(
     }
     let built = params.model().and_then(|params| {
         let step = TimeStep::from_seconds(time_step_s)?;
-        let (least, most) = params.path_domain();
-        let path = (0.5 * (least + most)) as f32;
+        let path = params.middle_path() as f32;
         Ok(match mode_of(mode)? {
             VmMode::Continuous => {
                 let muscle = ContinuousMuscle::build(&params, step)?;
@@ -134,12 +135,13 @@ pub extern "C" fn vm_f32_step(
         force_n: output.force,
         fascicle_length: output.fascicle_length,
         fascicle_velocity: output.fascicle_velocity,
+        relative_force: output.relative_force,
         status: output.status.bits(),
     };
     VmResult::Ok
 }
 
-/// Saves a muscle's state.
+/// Saves a muscle's state, and which muscle, mode and time step it is of.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_save(
@@ -150,14 +152,15 @@ pub extern "C" fn vm_f32_save(
         return VmResult::NullPointer;
     };
     match slot.get() {
-        Ok(BankedMuscle::Continuous(_, state)) => keep(state.words(), words),
-        Ok(BankedMuscle::Fes(_, state)) => keep(state.words(), words),
+        Ok(BankedMuscle::Continuous(muscle, state)) => keep(muscle.save(state), words),
+        Ok(BankedMuscle::Fes(muscle, state)) => keep(muscle.save(state), words),
         Err(result) => return result,
     }
     VmResult::Ok
 }
 
-/// Restores a state that was saved; VM_RESULT_STATE, and no change, if this muscle cannot be in it.
+/// Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
+/// if this muscle cannot be in it, and then no change.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_restore(

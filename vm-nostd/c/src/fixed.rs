@@ -9,7 +9,7 @@ use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Fixed, Input, Scalar, Tim
 /// Bytes of a VmMuscleFixed.
 pub const VM_MUSCLE_FIXED_SIZE: usize = 680;
 /// Words of its saved state.
-pub const VM_FIXED_STATE_WORDS: usize = 23;
+pub const VM_FIXED_STATE_WORDS: usize = 24;
 
 /// A muscle computed in fixed point.
 pub type VmMuscleFixed = Slot<Fixed, 0x564D_5158>;
@@ -40,6 +40,8 @@ pub struct VmOutputFixed {
     pub fascicle_length: i32,
     /// Fascicle velocity, 2^-24 L_ce0/s, positive when lengthening.
     pub fascicle_velocity: i32,
+    /// Tendon force relative to F0, 2^-24 F0: finer than mN where F0 is below 16,777 N.
+    pub relative_force: i32,
     /// What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
     pub status: u16,
 }
@@ -70,8 +72,7 @@ pub extern "C" fn vm_fixed_build(
     }
     let built = params.model().and_then(|params| {
         let step = TimeStep::from_seconds(time_step_s)?;
-        let (least, most) = params.path_domain();
-        let path = Fixed::path_length(0.5 * (least + most));
+        let path = Fixed::path_length(params.middle_path());
         Ok(match mode_of(mode)? {
             VmMode::Continuous => {
                 let muscle = ContinuousMuscle::build(&params, step)?;
@@ -137,12 +138,13 @@ pub extern "C" fn vm_fixed_step(
         force_mn: output.force,
         fascicle_length: output.fascicle_length.to_bits(),
         fascicle_velocity: output.fascicle_velocity.to_bits(),
+        relative_force: output.relative_force.to_bits(),
         status: output.status.bits(),
     };
     VmResult::Ok
 }
 
-/// Saves a muscle's state.
+/// Saves a muscle's state, and which muscle, mode and time step it is of.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_save(
@@ -153,14 +155,15 @@ pub extern "C" fn vm_fixed_save(
         return VmResult::NullPointer;
     };
     match slot.get() {
-        Ok(BankedMuscle::Continuous(_, state)) => keep(state.words(), words),
-        Ok(BankedMuscle::Fes(_, state)) => keep(state.words(), words),
+        Ok(BankedMuscle::Continuous(muscle, state)) => keep(muscle.save(state), words),
+        Ok(BankedMuscle::Fes(muscle, state)) => keep(muscle.save(state), words),
         Err(result) => return result,
     }
     VmResult::Ok
 }
 
-/// Restores a state that was saved; VM_RESULT_STATE, and no change, if this muscle cannot be in it.
+/// Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
+/// if this muscle cannot be in it, and then no change.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_restore(

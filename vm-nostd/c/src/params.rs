@@ -12,13 +12,13 @@ use model::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmMuscleParams {
-    /// Mass, kg; 1e-5 to 20.
+    /// Mass, kg; 1e-5 to 30.
     pub mass_kg: f64,
     /// Optimal fascicle length L_ce0, m; 0.005 to 1.
     pub fascicle_length_m: f64,
-    /// Optimal tendon length L_se0, m; 0.001 to 2.
+    /// Optimal tendon length L_se0, m; 0.0005 to 2.
     pub tendon_length_m: f64,
-    /// Longest musculotendon path, m.
+    /// Longest musculotendon path L_mt_max, m: it scales the parallel elastic element, and paths may be longer.
     pub max_path_length_m: f64,
     /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
     pub recruitment_saturation: f64,

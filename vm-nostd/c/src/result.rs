@@ -19,6 +19,8 @@ pub enum VmResult {
     Parameter = 4,
     /// These words are no state of this muscle.
     State = 5,
+    /// These words were saved by another muscle, or for another mode or time step.
+    OtherMuscle = 6,
 }
 
 /// Bytes of VmError's field, its final 0 included.
@@ -61,7 +63,10 @@ impl From<ParameterError> for VmError {
 }
 
 impl From<RestoreError> for VmResult {
-    fn from(_: RestoreError) -> Self {
-        Self::State
+    fn from(error: RestoreError) -> Self {
+        match error {
+            RestoreError::OtherMuscle { .. } => Self::OtherMuscle,
+            _ => Self::State,
+        }
     }
 }

@@ -28,8 +28,8 @@ pub struct Slot<S: Scalar, const MARK: u32> {
 
 /// How many words a saved state has, whatever the mode.
 pub const fn words<S: Scalar>() -> usize {
-    let continuous = State::<S, NaturalContinuous, VM_FIBERS>::WORDS;
-    assert!(continuous == State::<S, IntramuscularFes, VM_FIBERS>::WORDS);
+    let continuous = State::<S, NaturalContinuous, VM_FIBERS>::SAVED_WORDS;
+    assert!(continuous == State::<S, IntramuscularFes, VM_FIBERS>::SAVED_WORDS);
     continuous
 }
 

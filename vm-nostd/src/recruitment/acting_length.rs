@@ -27,6 +27,8 @@ pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
     type State: Copy + Debug + PartialEq;
     type Coefficients: Copy + Debug + Summed;
     const WORDS: usize;
+    /// That of the discrete recruitment which takes it.
+    const MODE: u32;
 
     /// Of a type, in a muscle whose equations hold from one fascicle length (L_ce0) to another.
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients;
@@ -51,6 +53,7 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
     type State = ();
     type Coefficients = ();
     const WORDS: usize = 0;
+    const MODE: u32 = 3;
 
     fn new(_: &FiberType, _: (f64, f64), _: TimeStep) {}
     fn at_rest() {}
@@ -87,6 +90,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
     type State = S::Slow;
     type Coefficients = EffectiveLengthCoefficients<S>;
     const WORDS: usize = S::SLOW_WORDS;
+    const MODE: u32 = 4;
 
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {
         EffectiveLengthCoefficients {

@@ -28,6 +28,8 @@ pub struct NaturalContinuous;
 impl Sealed for NaturalContinuous {}
 
 impl<S: Scalar, const N: usize> Recruitment<S, N> for NaturalContinuous {
+    const MODE: u32 = 1;
+
     type Units = ();
     type State = LumpedState<S, N>;
     type Coefficients = Coefficients<S, N>;

@@ -29,6 +29,8 @@ impl<A, const UNITS: usize> Sealed for NaturalDiscrete<A, UNITS> {}
 impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitment<S, N>
     for NaturalDiscrete<A, UNITS>
 {
+    const MODE: u32 = A::MODE;
+
     type Units = MotorUnits<UNITS>;
     type State = DiscreteState<S, A, UNITS>;
     type Coefficients = Coefficients<S, A, UNITS>;

@@ -24,6 +24,8 @@ pub struct IntramuscularFes;
 impl Sealed for IntramuscularFes {}
 
 impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
+    const MODE: u32 = 2;
+
     type Units = ();
     type State = LumpedState<S, N>;
     type Coefficients = Coefficients<S, N>;

@@ -59,12 +59,14 @@ impl Scalar for Fixed {
     /// mN.
     type Force = i32;
 
+    const ARITHMETIC: u32 = 3;
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(ONE);
     const HALF: Self = Self::from_bits(ONE / 2);
     const LEAST: Self = Self::from_bits(1);
     const LARGEST_COEFFICIENT: f64 = 60.0;
     const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
+    const FORCE_STEP: f64 = 1e-3;
     const LONGEST_PATH: f64 = 4.19;
     const SLOW_WORDS: usize = 2;
 
@@ -258,6 +260,9 @@ impl Scalar for Fixed {
     }
     fn newtons(force: i32) -> f64 {
         f64::from(force) * 1e-3
+    }
+    fn newtons_of(_: i32, relative_force: Self, newtons: f64) -> f64 {
+        relative_force.to_f64() * newtons
     }
 }
 

@@ -10,7 +10,7 @@ use super::{Lags, Scalar};
 pub(crate) use double::{one_minus_exp, square_root, tangent};
 
 macro_rules! float {
-    ($float:ty, $bits:ty, $kernels:ident) => {
+    ($float:ty, $bits:ty, $kernels:ident, $arithmetic:literal) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
@@ -22,12 +22,14 @@ macro_rules! float {
             type Quantity = Self;
             type Force = Self;
 
+            const ARITHMETIC: u32 = $arithmetic;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
             const LEAST: Self = 1e-36;
             const LARGEST_COEFFICIENT: f64 = f64::MAX;
             const MAXIMAL_FORCES: (f64, f64) = (0.0, f64::MAX);
+            const FORCE_STEP: f64 = 0.0;
             const LONGEST_PATH: f64 = f64::MAX;
             const SLOW_WORDS: usize = 1;
 
@@ -231,12 +233,15 @@ macro_rules! float {
             fn newtons(force: Self) -> f64 {
                 f64::from(force)
             }
+            fn newtons_of(force: Self, _: Self, _: f64) -> f64 {
+                f64::from(force)
+            }
         }
     };
 }
 
-float!(f32, u32, single);
-float!(f64, u64, double);
+float!(f32, u32, single, 1);
+float!(f64, u64, double, 2);
 
 #[cfg(test)]
 mod tests {
