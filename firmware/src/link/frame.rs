@@ -6,7 +6,7 @@ use heapless::Vec;
 use serde::Serialize;
 
 /// Of this format and its messages: other versions are refused.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// Longest message, bytes.
 pub const MOST_CONTENT: usize = 1024;
 /// Version, and sequence number in little endian.

@@ -45,8 +45,19 @@ pub enum HilError {
         /// A device that has no room for rows, which passes.
         no_room: bool,
     },
+    /// Host and device were not made for each other.
+    #[error(
+        "the device speaks version {device} of the link's protocol, this program version {host}: \
+         flash the firmware that belongs to this program"
+    )]
+    OtherVersion {
+        /// The device's version.
+        device: u8,
+        /// The one of this program.
+        host: u8,
+    },
     /// It was not understood.
-    #[error("the device does not act upon {request}: {error:?}")]
+    #[error("the device does not act upon {request}: {}", why(*error))]
     NotActedUpon {
         /// What was asked.
         request: &'static str,
@@ -177,9 +188,7 @@ impl<L: Line> Client<L> {
                     self.send_raw(&frame)?;
                     sent = Instant::now();
                 }
-                Heard::NotActedUpon(error) => {
-                    return Err(HilError::NotActedUpon { request: name, error });
-                }
+                Heard::NotActedUpon(error) => return Err(not_acted_upon(name, error)),
                 Heard::Nothing if sent.elapsed() > AGAIN => {
                     self.send_raw(&frame)?;
                     sent = Instant::now();
@@ -194,6 +203,7 @@ impl<L: Line> Client<L> {
     pub fn greet(&mut self) -> Result<Info, HilError> {
         let started = Instant::now();
         let mut sent: Option<Instant> = None;
+        let mut refused = None;
         while started.elapsed() < PATIENCE {
             if sent.is_none_or(|sent| sent.elapsed() > GREET_AGAIN) {
                 let sequence = self.sequence;
@@ -204,15 +214,24 @@ impl<L: Line> Client<L> {
                 self.send_raw(&hello.unwrap_or_default())?;
                 sent = Some(Instant::now());
             }
-            // An answer to an earlier greeting would begin a session that a later one ends.
-            if let Heard::Answer(to, Ok(Answer::Info(info))) = self.hear()?
-                && to.wrapping_add(1) == self.sequence
-            {
-                self.session = info.session;
-                return Ok(info);
+            match self.hear()? {
+                // An answer to an earlier greeting would begin a session that a later one ends.
+                Heard::Answer(to, Ok(Answer::Info(info)))
+                    if to.wrapping_add(1) == self.sequence =>
+                {
+                    self.session = info.session;
+                    return Ok(info);
+                }
+                Heard::NotActedUpon(error @ LinkError::Version { .. }) => {
+                    return Err(not_acted_upon("hello", error));
+                }
+                // May pass: what was left on the line is broken, and what is armed will not be for ever.
+                Heard::NotActedUpon(error) => refused = Some(error),
+                Heard::Answer(..) | Heard::Nothing => (),
             }
         }
-        Err(HilError::Silence { request: "hello" })
+        Err(refused
+            .map_or(HilError::Silence { request: "hello" }, |error| not_acted_upon("hello", error)))
     }
 
     /// The same where there is nothing to be said but that it was done.
@@ -238,9 +257,14 @@ impl<L: Line> Client<L> {
                 Err(error) if error.kind() == ErrorKind::Interrupted => continue,
                 Err(error) => return Err(error.into()),
             }
-            // What is broken on its way here is asked for again after a while.
-            let Some(Ok(Frame { content, .. })) = self.receiver.push(byte[0], NO_SESSION) else {
-                continue;
+            let content = match self.receiver.push(byte[0], NO_SESSION) {
+                Some(Ok(Frame { content, .. })) => content,
+                // Its messages cannot be read, whatever they are.
+                Some(Err(LinkError::Version { got, known })) => {
+                    return Err(HilError::OtherVersion { device: got, host: known });
+                }
+                // What is broken on its way here is asked for again after a while.
+                Some(Err(_)) | None => continue,
             };
             match postcard::from_bytes::<Message<'_>>(content) {
                 Ok(Message::Answer { to, answer }) => return Ok(Heard::Answer(to, owned(answer))),
@@ -249,6 +273,29 @@ impl<L: Line> Client<L> {
                 Err(_) => (),
             }
         }
+    }
+}
+
+fn not_acted_upon(request: &'static str, error: LinkError) -> HilError {
+    match error {
+        LinkError::Version { got, known } => HilError::OtherVersion { device: known, host: got },
+        error => HilError::NotActedUpon { request, error },
+    }
+}
+
+fn why(error: LinkError) -> String {
+    match error {
+        LinkError::TooLong => "longer than any frame".to_owned(),
+        LinkError::TooShort => "shorter than any frame".to_owned(),
+        LinkError::Malformed => "not a frame".to_owned(),
+        LinkError::Checksum => "its checksum is another one".to_owned(),
+        LinkError::Version { got, known } => format!("of version {got}, not {known}"),
+        LinkError::NoSession => {
+            "it belongs to no session; none begins while stimulation is armed".to_owned()
+        }
+        LinkError::Replayed { sequence } => format!("number {sequence} was acted upon before"),
+        LinkError::OutOfOrder { got, due } => format!("number {got} came where {due} was due"),
+        LinkError::NotAMessage => "it is no message".to_owned(),
     }
 }
 

@@ -89,17 +89,8 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     let said = reaction(&mut device, &encode(session, 1, &(Request::Arm, 0_u8)).expect("a frame"));
     assert_eq!(said, "NotAMessage");
     // Another version, whole in itself.
-    let mut whole = vec![firmware::link::VERSION + 1, 1, 0, 0];
-    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    let mut digest = crc.digest();
-    digest.update(&session.to_le_bytes());
-    digest.update(&whole);
-    whole.extend(digest.finalize().to_le_bytes());
-    let mut other = vec![0; 32];
-    let length = cobs::encode(&whole, &mut other);
-    other.truncate(length + 1);
-    let said = reaction(&mut device, &other);
-    assert_eq!(said, "Version { got: 2, known: 1 }");
+    let said = reaction(&mut device, &of_version(firmware::link::VERSION + 1, session, 1, &[0]));
+    assert_eq!(said, "Version { got: 3, known: 2 }");
     // None of it was acted upon: the frame that is due still is.
     assert!(reaction(&mut device, &good).contains("Done"));
     let report = reaction(&mut device, &frame(2, &Request::Report));
@@ -107,6 +98,34 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     let broken = u32::try_from(broken + 1).expect("few");
     let counters = Counters { accepted: 4, broken, refused: 7 };
     assert!(report.contains(&format!("{counters:?}")), "{report}, not {counters:?}");
+}
+
+/// A frame as a host of another version makes it: the envelope is the same in all of them.
+fn of_version(version: u8, session: SessionNumber, sequence: u16, content: &[u8]) -> Vec<u8> {
+    let mut whole = vec![version];
+    whole.extend(sequence.to_le_bytes());
+    whole.extend(content);
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let mut digest = crc.digest();
+    digest.update(&session.to_le_bytes());
+    digest.update(&whole);
+    whole.extend(digest.finalize().to_le_bytes());
+    let mut frame = vec![0; cobs::max_encoding_length(whole.len())];
+    let length = cobs::encode(&whole, &mut frame);
+    frame.truncate(length);
+    frame.push(0);
+    frame
+}
+
+/// A host of version 1 greets with nothing but the request's number: it is told which version the device has, and
+/// begins no session.
+#[test]
+fn a_host_of_version_1_is_refused_by_name() {
+    let mut device = InProcess::boot(Memory::new());
+    let greeting = of_version(1, NO_SESSION, 65535, &[0]);
+    assert_eq!(reaction(&mut device, &greeting), "Version { got: 1, known: 2 }");
+    let keep_alive = encode(NO_SESSION, 0, &Request::KeepAlive).expect("a frame");
+    assert_eq!(reaction(&mut device, &keep_alive), "NoSession");
 }
 
 /// A greeting cannot be used to begin again under current.

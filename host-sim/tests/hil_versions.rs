@@ -1,0 +1,59 @@
+//! A device of another version of the protocol is named as such, whichever side sees it first.
+
+use firmware::link::{LinkError, Message, NO_SESSION, VERSION, encode};
+use host_sim::hil::Client;
+use std::io::{Error, ErrorKind, Read, Result, Write};
+
+/// A device that says the same whatever it hears.
+struct Says(Vec<u8>);
+
+impl Read for Says {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize> {
+        let length = self.0.len().min(bytes.len());
+        bytes[..length].copy_from_slice(&self.0[..length]);
+        self.0.drain(..length);
+        if length > 0 { Ok(length) } else { Err(Error::from(ErrorKind::TimedOut)) }
+    }
+}
+
+impl Write for Says {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Its frame with another version in it.
+fn of_version(version: u8, message: &Message<'_>) -> Vec<u8> {
+    let mut frame = encode(NO_SESSION, 0, message).expect("a frame").to_vec();
+    let length = cobs::decode_in_place(&mut frame).expect("a frame");
+    let mut whole = frame[..length - 4].to_vec();
+    whole[0] = version;
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let mut digest = crc.digest();
+    digest.update(&NO_SESSION.to_le_bytes());
+    digest.update(&whole);
+    whole.extend(digest.finalize().to_le_bytes());
+    let mut frame = vec![0; cobs::max_encoding_length(whole.len())];
+    let length = cobs::encode(&whole, &mut frame);
+    frame.truncate(length);
+    frame.push(0);
+    frame
+}
+
+#[test]
+fn both_versions_are_in_the_error_and_what_to_do() {
+    let expected = format!(
+        "the device speaks version 1 of the link's protocol, this program version {VERSION}: \
+         flash the firmware that belongs to this program"
+    );
+    // An older device answers in its own version; one that can be understood says so itself.
+    let refusal = Message::NotActedUpon(LinkError::Version { got: VERSION, known: 1 });
+    for said in [of_version(1, &refusal), of_version(VERSION, &refusal)] {
+        let error = Client::new(Says(said)).greet().expect_err("another version");
+        assert_eq!(error.to_string(), expected);
+    }
+}
