@@ -119,8 +119,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
 
     /// Bytes were lost on the line, or arrived as none.
     pub fn lost(&mut self) {
-        // What has begun is broken: its checksum will say so.
-        let _not_the_end = self.receiver.push(0xff, NO_SESSION);
+        self.receiver.lost();
     }
 
     /// Looks for what the tick has to say.

@@ -55,7 +55,9 @@ pub fn encode(
     let mut frame = Vec::new();
     frame.resize(MOST_FRAME, 0).ok()?;
     let encoded = cobs::try_encode(whole.get(..length + TRAILER)?, &mut frame).ok()?;
-    frame.truncate(encoded + 1);
+    // The encoder may have written behind its end, where a run of 254 bytes ends there.
+    frame.truncate(encoded);
+    frame.push(0).ok()?;
     Some(frame)
 }
 
@@ -69,17 +71,25 @@ fn checksum(session: SessionNumber, covered: &[u8]) -> u32 {
 /// Collects the bytes of a line until a frame is whole.
 #[derive(Debug, Default)]
 pub struct Receiver {
-    bytes: Vec<u8, MOST_FRAME>,
+    /// Of a frame, without the zero that ends it.
+    bytes: Vec<u8, { MOST_FRAME - 1 }>,
     /// The frame that was whole last is still in `bytes`.
     taken: bool,
     /// More bytes came than a frame has.
     too_long: bool,
+    /// A byte of this frame did not arrive.
+    incomplete: bool,
 }
 
 impl Receiver {
     /// Nothing has arrived.
     pub const fn new() -> Self {
-        Self { bytes: Vec::new(), taken: false, too_long: false }
+        Self { bytes: Vec::new(), taken: false, too_long: false, incomplete: false }
+    }
+
+    /// A byte was lost on the line, or arrived as none: what has begun, or begins next, is no frame.
+    pub fn lost(&mut self) {
+        self.incomplete = true;
     }
 
     /// Takes a byte. Where it ends a frame, of this session or of none, that is what comes back, or why it is none.
@@ -96,8 +106,12 @@ impl Receiver {
             return None;
         }
         self.taken = true;
+        let incomplete = core::mem::take(&mut self.incomplete);
         if core::mem::take(&mut self.too_long) {
             return Some(Err(LinkError::TooLong));
+        }
+        if incomplete {
+            return Some(Err(LinkError::Malformed));
         }
         // Zeros between frames are no frames: a sender may begin with one to be sure.
         if self.bytes.is_empty() { None } else { Some(whole(&mut self.bytes, session)) }

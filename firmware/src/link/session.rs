@@ -10,7 +10,7 @@ pub enum LinkError {
     TooLong,
     /// Shorter than any frame: cut off.
     TooShort,
-    /// Not COBS.
+    /// Not COBS, or bytes of it were lost.
     Malformed,
     /// The checksum is another one.
     Checksum,

@@ -98,6 +98,16 @@ impl<F: NorFlash> InProcess<F> {
         }
     }
 
+    /// Takes bytes in which the line has lost one, before so many of them.
+    pub fn receive_with_a_loss(&mut self, bytes: &[u8], before: usize) {
+        for (index, &byte) in bytes.iter().enumerate() {
+            if index == before {
+                self.server.lost();
+            }
+            self.server.receive(byte);
+        }
+    }
+
     fn see(&mut self) {
         let electrodes = self.electrodes.borrow();
         assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);

@@ -128,6 +128,18 @@ fn a_host_of_version_1_is_refused_by_name() {
     assert_eq!(reaction(&mut device, &keep_alive), "NoSession");
 }
 
+/// What the line says that it has lost is never guessed at.
+#[test]
+fn a_frame_that_the_line_has_lost_a_byte_of_is_not_acted_upon() {
+    let mut device = InProcess::boot(Memory::new());
+    let hello = encode(NO_SESSION, 0, &Request::Hello).expect("a frame");
+    for before in 0..hello.len() {
+        device.receive_with_a_loss(&hello, before);
+        assert_eq!(reaction(&mut device, &[]), "Malformed", "before byte {before}");
+    }
+    assert!(reaction(&mut device, &hello).contains("session: "));
+}
+
 /// A greeting cannot be used to begin again under current.
 #[test]
 fn a_greeting_while_armed_is_a_frame_like_any_other() {
