@@ -12,24 +12,27 @@
 //!
 //! The same image runs in QEMU, whose chip has no clock control: [`is_emulated`] tells them apart.
 
+mod memory;
+mod noise;
+mod watchdog;
+
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
-use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
-};
+use firmware::flash::Flash;
 use firmware::safety::{CHANNELS, Fault};
 use firmware::{Bridge, OutputStage, Pulses, RamFlash, Scale};
-use stm32f4xx_hal::flash::{FlashExt, LockedFlash};
+pub use memory::Memory;
+pub use noise::Numbers;
 use stm32f4xx_hal::gpio::{ErasedPin, Output, PushPull, Speed};
 use stm32f4xx_hal::nb;
 pub use stm32f4xx_hal::pac;
-use stm32f4xx_hal::pac::{IWDG, RCC, SPI1, TIM2, USART1};
+use stm32f4xx_hal::pac::{RCC, SPI1, TIM2, USART1};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{self, Rcc};
 use stm32f4xx_hal::serial::{Config, Rx, Serial, Tx};
 use stm32f4xx_hal::spi::{self, Spi};
-use stm32f4xx_hal::watchdog::IndependentWatchdog;
+pub use watchdog::Watchdog;
 
 /// A pin that is driven.
 pub type Pin = ErasedPin<Output<PushPull>>;
@@ -64,6 +67,8 @@ pub struct Board {
     pub from_host: FromHost,
     /// For what outlasts a loss of power.
     pub memory: Memory,
+    /// For the numbers of sessions.
+    pub numbers: Numbers,
     /// Why it boots.
     pub boot: Fault,
 }
@@ -76,11 +81,11 @@ fn is_emulated(rcc: &RCC) -> bool {
 
 impl Board {
     /// Outputs first, then everything else; ticks of so many µs.
-    pub fn start(core: cortex_m::Peripherals, device: pac::Peripherals, tick_us: u32) -> Self {
+    pub fn start(mut core: cortex_m::Peripherals, device: pac::Peripherals, tick_us: u32) -> Self {
         let is_emulated = is_emulated(&device.RCC);
         let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
-        let mut watchdog = Watchdog::new(device.IWDG);
+        let watchdog = Watchdog::start(device.IWDG, tick_us);
         let mut rcc = device.RCC.constrain();
 
         let a = device.GPIOA.split(&mut rcc);
@@ -99,10 +104,13 @@ impl Board {
         ];
         let mut select: Pin = a.pa4.into_push_pull_output().erase();
         select.set_high();
-        // Without its crystal it stays here, in neutral, until the watchdog starts it again.
-        watchdog.feed(false);
         if !is_emulated {
-            rcc = rcc.freeze(rcc::Config::hse(8.MHz()).sysclk(CORE_CLOCK.Hz()));
+            // Without its crystal it stays here, in neutral, until the watchdog starts it again.
+            // 48 MHz for the random number generator: the PLL's 336 MHz by 7, as 168 MHz are by 2.
+            rcc = rcc.freeze(rcc::Config::hse(8.MHz()).sysclk(CORE_CLOCK.Hz()).require_pll48clk());
+            // Flash is waited for by this clock.
+            core.DCB.enable_trace();
+            core.DWT.enable_cycle_counter();
             // A crystal that fails later is an interrupt that cannot be masked: a reset.
             rcc.cr().modify(|_, w| w.csson().set_bit());
         }
@@ -140,8 +148,9 @@ impl Board {
             memory: if is_emulated {
                 Memory::Ram(RamFlash::new())
             } else {
-                Memory::Flash(LockedFlash::new(device.FLASH))
+                Memory::Flash(Flash::new(memory::Controller::new(device.FLASH)))
             },
+            numbers: Numbers::new(device.RNG, &mut rcc, is_emulated),
             boot: if watchdog_reset { Fault::Watchdog } else { Fault::Boot },
         }
     }
@@ -283,101 +292,5 @@ impl TickTimer {
     /// Whether one was due since this was asked last.
     pub fn was_due(&mut self) -> bool {
         self.timer.has_wrapped()
-    }
-}
-
-/// Restarts the chip when ticks stop coming.
-pub struct Watchdog {
-    watchdog: IndependentWatchdog,
-    armed: Option<bool>,
-}
-
-/// While current may flow, and otherwise: erasing flash holds the core up for seconds. Its oscillator is a rough
-/// one: 10 ms are 7 to 19.
-const PATIENCE_ARMED_MS: u32 = 10;
-const PATIENCE_MS: u32 = 8_000;
-
-impl Watchdog {
-    fn new(watchdog: IWDG) -> Self {
-        Self { watchdog: IndependentWatchdog::new(watchdog), armed: None }
-    }
-
-    /// A tick has ended in time.
-    pub fn feed(&mut self, armed: bool) {
-        if self.armed.replace(armed) == Some(armed) {
-            self.watchdog.feed();
-        } else {
-            self.watchdog.start(if armed { PATIENCE_ARMED_MS } else { PATIENCE_MS }.millis());
-        }
-    }
-}
-
-/// Where the last two sectors of flash begin; `memory.x` keeps the program out of them.
-const STORAGE: u32 = 768 * 1024;
-const STORAGE_BYTES: usize = 256 * 1024;
-const SECTOR: usize = STORAGE_BYTES / 2;
-
-/// What outlasts a loss of power; in an emulator, only for as long as that runs.
-// One of them is only there in an emulator, which has memory enough.
-#[allow(clippy::large_enum_variant)]
-pub enum Memory {
-    /// Two sectors.
-    Flash(LockedFlash),
-    /// The same in small.
-    Ram(RamFlash<8192>),
-}
-
-/// Memory did not do what it was to.
-#[derive(Debug)]
-pub struct MemoryError;
-
-impl NorFlashError for MemoryError {
-    fn kind(&self) -> NorFlashErrorKind {
-        NorFlashErrorKind::Other
-    }
-}
-
-impl ErrorType for Memory {
-    type Error = MemoryError;
-}
-
-impl ReadNorFlash for Memory {
-    const READ_SIZE: usize = 1;
-
-    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), MemoryError> {
-        match self {
-            Self::Flash(flash) => flash.read(STORAGE + offset, bytes).map_err(|_| MemoryError),
-            Self::Ram(ram) => ram.read(offset, bytes).map_err(|_| MemoryError),
-        }
-    }
-
-    fn capacity(&self) -> usize {
-        match self {
-            Self::Flash(_) => STORAGE_BYTES,
-            Self::Ram(ram) => ram.capacity(),
-        }
-    }
-}
-
-impl NorFlash for Memory {
-    const WRITE_SIZE: usize = 4;
-    const ERASE_SIZE: usize = SECTOR;
-
-    fn erase(&mut self, from: u32, to: u32) -> Result<(), MemoryError> {
-        match self {
-            Self::Flash(flash) => {
-                NorFlash::erase(&mut flash.unlocked(), STORAGE + from, STORAGE + to)
-                    .map_err(|_| MemoryError)
-            }
-            Self::Ram(ram) => ram.erase(from, to).map_err(|_| MemoryError),
-        }
-    }
-
-    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), MemoryError> {
-        match self {
-            Self::Flash(flash) => NorFlash::write(&mut flash.unlocked(), STORAGE + offset, bytes)
-                .map_err(|_| MemoryError),
-            Self::Ram(ram) => ram.write(offset, bytes).map_err(|_| MemoryError),
-        }
     }
 }

@@ -14,8 +14,8 @@ mod board;
 #[rtic::app(device = crate::board::pac, peripherals = true)]
 mod app {
     use crate::board::{
-        self, Board, Converter, FromHost, Memory, Pin, PulseTimer, Received, SCALE, TickTimer,
-        ToHost, Watchdog, pac,
+        self, Board, Converter, FromHost, Memory, Numbers, Pin, PulseTimer, Received, SCALE,
+        TickTimer, ToHost, Watchdog, pac,
     };
     use defmt_rtt as _;
     use firmware::safety::Fault;
@@ -46,7 +46,7 @@ mod app {
         received: Producer<'static, Received>,
         arrived: Consumer<'static, Received>,
         to_host: ToHost,
-        server: Server<'static, Memory>,
+        server: Server<'static, Memory, Numbers>,
     }
 
     /// Outputs are neutral before anything else is done.
@@ -65,6 +65,7 @@ mod app {
             to_host,
             from_host,
             memory,
+            numbers,
             boot,
         } = Board::start(context.core, context.device, TICK_US);
         let init::LocalResources { gate, plans, lines, bytes, .. } = context.local;
@@ -79,7 +80,7 @@ mod app {
             board::reset()
         };
         let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
-        let server = Server::new(link_ends, gate, memory, step);
+        let server = Server::new(link_ends, gate, memory, numbers, step);
         defmt::info!("a tick of {=u32} us", TICK_US);
         if boot == Fault::Watchdog {
             defmt::warn!("started again by the watchdog");

@@ -6,11 +6,12 @@ use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::link::{
     Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
-    Upload, encode,
+    SessionNumber, Upload, encode,
 };
+use crate::randomness::Randomness;
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
-use crate::storage::{MOST_STORED, Slots};
+use crate::storage::{MOST_STORED, NotStored, Slots};
 use embedded_storage::nor_flash::NorFlash;
 use heapless::{Deque, Vec};
 use vm_nostd::TimeStep;
@@ -30,7 +31,7 @@ enum Waiting {
 }
 
 /// Takes bytes, gives bytes, and tells the tick what it is to do.
-pub struct Server<'q, F> {
+pub struct Server<'q, F, R> {
     receiver: Receiver,
     session: Session,
     ends: LinkEnds<'q>,
@@ -45,15 +46,22 @@ pub struct Server<'q, F> {
     /// Number of the row that is due.
     row: u32,
     sequence: u16,
-    /// How often the tick was asked for something: no two sessions begin at the same.
+    /// How often this was looked after, for a source of randomness that has nothing else.
     polls: u32,
+    randomness: R,
     /// Bytes for the host, an answer and a message of traces at most.
     out: Deque<u8, { 2 * MOST_FRAME }>,
 }
 
-impl<'q, F: NorFlash> Server<'q, F> {
+impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
     /// Takes over what is stored, and gives the tick the muscles that are whole and can be built.
-    pub fn new(ends: LinkEnds<'q>, gate: &'q Gate, memory: F, step: TimeStep) -> Self {
+    pub fn new(
+        ends: LinkEnds<'q>,
+        gate: &'q Gate,
+        memory: F,
+        randomness: R,
+        step: TimeStep,
+    ) -> Self {
         let mut server = Self {
             receiver: Receiver::new(),
             session: Session::new(),
@@ -68,6 +76,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
             row: 0,
             sequence: 0,
             polls: 0,
+            randomness,
             out: Deque::new(),
         };
         let stored =
@@ -101,12 +110,17 @@ impl<'q, F: NorFlash> Server<'q, F> {
 
     /// Takes a byte from the line.
     pub fn receive(&mut self, byte: u8) {
-        // Odd, and so never the number of no session.
-        let number = self.polls.wrapping_mul(0x9E37_79B1) | 1;
-        let may_begin = (!self.is_armed()).then_some(number);
-        let Some(received) = self.receiver.push(byte, self.session.number()) else { return };
+        let (armed, session) = (self.is_armed(), self.session.number());
+        let Some(received) = self.receiver.push(byte, session) else { return };
         let sequence = received.map_or(0, |frame| frame.sequence);
-        match self.session.admit(received, may_begin) {
+        let begin = |nonce| {
+            if armed {
+                return Err(LinkError::NoSession);
+            }
+            let number = self.randomness.number(self.polls).ok_or(LinkError::NoRandomNumber)?;
+            Ok(session_number(number, nonce, session))
+        };
+        match self.session.admit(received, begin) {
             Err(error) => self.refuse_frame(error),
             Ok(request) => {
                 self.gate.set_heard();
@@ -165,7 +179,7 @@ impl<'q, F: NorFlash> Server<'q, F> {
         request: Request,
     ) -> Result<Option<Answer<'static>>, Refusal<'static>> {
         let order = match request {
-            Request::Hello => return Ok(Some(Answer::Info(self.info()))),
+            Request::Hello { .. } => return Ok(Some(Answer::Info(self.info()))),
             Request::Upload { place, upload } => self.upload(place, upload)?,
             Request::Rest(paths) => self.rest(&paths)?,
             Request::Rows { first, rows } => {
@@ -203,8 +217,9 @@ impl<'q, F: NorFlash> Server<'q, F> {
             *slot = Some(upload);
         }
         let mut bytes = [0; MOST_STORED];
-        let bytes = postcard::to_slice(&uploads, &mut bytes).map_err(|_| Refusal::NotStored)?;
-        self.slots.store(bytes).map_err(|_| Refusal::NotStored)?;
+        let bytes = postcard::to_slice(&uploads, &mut bytes)
+            .map_err(|_| Refusal::NotStored(NotStored::TooLong))?;
+        self.slots.store(bytes).map_err(Refusal::NotStored)?;
         self.uploads = uploads;
         if let Some(slot) = self.built.get_mut(index) {
             *slot = Some(driven.clone());
@@ -305,6 +320,12 @@ impl<'q, F: NorFlash> Server<'q, F> {
             let _there_is_room = self.out.push_back(byte);
         }
     }
+}
+
+/// Of the device's random number and the host's; odd, and so never that of no session, and not that of the one before.
+fn session_number(random: u32, nonce: u32, before: SessionNumber) -> SessionNumber {
+    let number = (random ^ nonce) | 1;
+    if number == before { number.wrapping_add(2) } else { number }
 }
 
 fn check_place(place: u8) -> Result<(), Refusal<'static>> {

@@ -7,17 +7,31 @@
 use crate::link::VERSION;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::NorFlash;
+use serde::{Deserialize, Serialize};
 
 /// Longest content, bytes.
 pub const MOST_STORED: usize = 2048;
 const HEADER: usize = 16;
+/// Bytes that storing writes at most.
+pub(crate) const MOST_SLOT: usize = HEADER + MOST_STORED;
 /// Whose it is, and of which messages: other versions lay a muscle out in another way.
 const MAGIC: u32 = 0x4D53_4D00 + VERSION as u32;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// Memory did not take or keep it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NotStored;
+/// Why memory did not take or keep a content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum NotStored {
+    /// It is longer than [`MOST_STORED`].
+    TooLong,
+    /// What is stored could not be read: nothing was erased.
+    Read,
+    /// The slot for it was not erased.
+    Erase,
+    /// It was not written.
+    Write,
+    /// It was written, and is not what is read.
+    Kept,
+}
 
 /// A slot that is whole.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +45,7 @@ struct Whole {
 #[derive(Debug)]
 pub struct Slots<F> {
     memory: F,
-    buffer: [u8; HEADER + MOST_STORED],
+    buffer: [u8; MOST_SLOT],
 }
 
 impl<F: NorFlash> Slots<F> {
@@ -47,20 +61,25 @@ impl<F: NorFlash> Slots<F> {
 
     /// What was stored last, if anything.
     pub fn load(&mut self) -> Option<&[u8]> {
-        let Whole { slot, length, .. } = self.newest()?;
+        let Whole { slot, length, .. } = self.newest().ok()??;
         // Both were in the buffer; it may hold the other one.
-        self.whole(slot)?;
+        self.whole(slot).ok()??;
         self.buffer.get(HEADER..HEADER + length)
     }
 
     /// Stores a content; what was stored before counts until this is whole, and after an error still does.
     pub fn store(&mut self, content: &[u8]) -> Result<(), NotStored> {
-        let newest = self.newest();
+        if content.len() > MOST_STORED {
+            return Err(NotStored::TooLong);
+        }
+        // A memory that cannot be read may hold a content that counts.
+        let newest = self.newest()?;
         let (slot, generation) =
             newest.map_or((0, 0), |newest| (1 - newest.slot, newest.generation.wrapping_add(1)));
         let padded = content.len().next_multiple_of(F::WRITE_SIZE);
         self.buffer.fill(0xff);
-        let place = self.buffer.get_mut(HEADER..HEADER + content.len()).ok_or(NotStored)?;
+        let place =
+            self.buffer.get_mut(HEADER..HEADER + content.len()).ok_or(NotStored::TooLong)?;
         place.copy_from_slice(content);
         // No longer than the buffer.
         let length = content.len() as u32;
@@ -68,20 +87,23 @@ impl<F: NorFlash> Slots<F> {
         for (place, field) in self.buffer.chunks_exact_mut(4).zip(fields) {
             place.copy_from_slice(&field.to_le_bytes());
         }
-        let crc = checksum(&self.buffer, content.len()).ok_or(NotStored)?;
-        self.buffer.get_mut(12..HEADER).ok_or(NotStored)?.copy_from_slice(&crc.to_le_bytes());
+        let crc = checksum(&self.buffer, content.len()).ok_or(NotStored::TooLong)?;
+        self.buffer
+            .get_mut(12..HEADER)
+            .ok_or(NotStored::TooLong)?
+            .copy_from_slice(&crc.to_le_bytes());
 
         let start = slot * self.half();
-        self.memory.erase(start, start + self.half()).map_err(|_| NotStored)?;
-        let written = self.buffer.get(HEADER..HEADER + padded).ok_or(NotStored)?;
-        self.memory.write(start + HEADER as u32, written).map_err(|_| NotStored)?;
-        let header = self.buffer.get(..HEADER).ok_or(NotStored)?;
-        self.memory.write(start, header).map_err(|_| NotStored)?;
+        self.memory.erase(start, start + self.half()).map_err(|_| NotStored::Erase)?;
+        let written = self.buffer.get(HEADER..HEADER + padded).ok_or(NotStored::TooLong)?;
+        self.memory.write(start + HEADER as u32, written).map_err(|_| NotStored::Write)?;
+        let header = self.buffer.get(..HEADER).ok_or(NotStored::TooLong)?;
+        self.memory.write(start, header).map_err(|_| NotStored::Write)?;
 
         // Read again: a worn page may keep something else.
-        let kept = self.whole(slot).ok_or(NotStored)?;
+        let kept = self.whole(slot)?.ok_or(NotStored::Kept)?;
         let same = self.buffer.get(HEADER..HEADER + kept.length) == Some(content);
-        if kept.generation == generation && same { Ok(()) } else { Err(NotStored) }
+        if kept.generation == generation && same { Ok(()) } else { Err(NotStored::Kept) }
     }
 
     fn half(&self) -> u32 {
@@ -89,26 +111,28 @@ impl<F: NorFlash> Slots<F> {
         (self.memory.capacity() / 2) as u32
     }
 
-    fn newest(&mut self) -> Option<Whole> {
-        match (self.whole(0), self.whole(1)) {
+    fn newest(&mut self) -> Result<Option<Whole>, NotStored> {
+        Ok(match (self.whole(0)?, self.whole(1)?) {
             (Some(first), Some(second)) => {
                 // Generations go round.
                 let ahead = second.generation.wrapping_sub(first.generation);
                 Some(if ahead < 0x8000_0000 { second } else { first })
             }
             (first, second) => first.or(second),
-        }
+        })
     }
 
     /// Reads a slot into the buffer, and says what it holds if it is whole.
-    fn whole(&mut self, slot: u32) -> Option<Whole> {
-        self.memory.read(slot * self.half(), &mut self.buffer).ok()?;
-        let mut fields =
-            self.buffer.chunks_exact(4).map(|bytes| bytes.try_into().map_or(0, u32::from_le_bytes));
-        let (magic, generation) = (fields.next()?, fields.next()?);
-        let (length, crc) = (fields.next()? as usize, fields.next()?);
+    fn whole(&mut self, slot: u32) -> Result<Option<Whole>, NotStored> {
+        self.memory.read(slot * self.half(), &mut self.buffer).map_err(|_| NotStored::Read)?;
+        let mut fields = [0; 4];
+        for (field, bytes) in fields.iter_mut().zip(self.buffer.chunks_exact(4)) {
+            *field = bytes.try_into().map_or(0, u32::from_le_bytes);
+        }
+        let [magic, generation, length, crc] = fields;
+        let length = length as usize;
         let whole = magic == MAGIC && checksum(&self.buffer, length) == Some(crc);
-        whole.then_some(Whole { slot, generation, length })
+        Ok(whole.then_some(Whole { slot, generation, length }))
     }
 }
 

@@ -20,8 +20,8 @@ pub const MOST_FRAME: usize = cobs::max_encoding_length(MOST_WHOLE) + 1;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// What a frame's checksum begins with: a number that the device makes up for each session, so that frames of an
-/// earlier one are no frames of this; [`NO_SESSION`] for greetings, and for all that the device says.
+/// What a frame's checksum begins with: another number for each session, so that frames of another one are none of
+/// this, but for one in 2^31; [`NO_SESSION`] for greetings, and for all that the device says.
 pub type SessionNumber = u32;
 /// See [`SessionNumber`].
 pub const NO_SESSION: SessionNumber = 0;

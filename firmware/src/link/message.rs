@@ -4,6 +4,7 @@ use crate::device::{MUSCLES, TYPES};
 use crate::link::{Counters, LinkError, SessionNumber};
 use crate::safety::{CHANNELS, Fault, NotArmed, State};
 use crate::stimulus::{Stimulus, StimulusError};
+use crate::storage::NotStored;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 use vm_nostd::{Limit, MuscleParams, ParameterError, RecruitmentCurveParams};
@@ -19,7 +20,10 @@ pub const MOST_WORDS: usize = 16;
 #[allow(clippy::large_enum_variant)]
 pub enum Request {
     /// Begins a session, from this sequence number on; not acted upon while armed. Answer: [`Answer::Info`].
-    Hello,
+    Hello {
+        /// A number that the host makes up: the session's is made of this and of the device's.
+        nonce: u32,
+    },
     /// Nothing but that the host is there.
     KeepAlive,
     /// A muscle for a place: validated, stored, and put there at rest. Refused while armed.
@@ -188,7 +192,7 @@ pub enum Refusal<'a> {
         room: u32,
     },
     /// Memory did not keep what it was given; what was stored before is still there.
-    NotStored,
+    NotStored(NotStored),
     /// Supervision did not go along.
     NotArmed(NotArmed),
     /// The electrode of another muscle has that channel.

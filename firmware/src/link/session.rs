@@ -37,6 +37,8 @@ pub enum LinkError {
     },
     /// Not a message, or more than one.
     NotAMessage,
+    /// A greeting: the device has no random number to begin a session with.
+    NoRandomNumber,
 }
 
 /// What became of frames since boot.
@@ -79,14 +81,14 @@ impl Session {
 
     /// The request in what a [`Receiver`](crate::link::Receiver) gave, if it is to be acted upon.
     ///
-    /// A greeting begins a session with any sequence number, of the number that it `may_begin` with, if there is one.
+    /// A greeting begins a session with any sequence number, of the number that `begin` makes of the host's nonce.
     /// Nothing else is acted upon that does not belong to a session.
     pub fn admit(
         &mut self,
         received: Result<Frame<'_>, LinkError>,
-        may_begin: Option<SessionNumber>,
+        begin: impl FnOnce(u32) -> Result<SessionNumber, LinkError>,
     ) -> Result<Request, LinkError> {
-        let admitted = received.and_then(|frame| self.request(&frame, may_begin));
+        let admitted = received.and_then(|frame| self.request(&frame, begin));
         let Counters { accepted, broken, refused } = &mut self.counters;
         let counter = match admitted {
             Ok(_) => accepted,
@@ -105,7 +107,7 @@ impl Session {
     fn request(
         &mut self,
         frame: &Frame<'_>,
-        may_begin: Option<SessionNumber>,
+        begin: impl FnOnce(u32) -> Result<SessionNumber, LinkError>,
     ) -> Result<Request, LinkError> {
         let parsed = match postcard::take_from_bytes::<Request>(frame.content) {
             Ok((request, [])) => Ok(request),
@@ -113,10 +115,8 @@ impl Session {
         };
         let (got, due) = (frame.sequence, self.due);
         if frame.session == NO_SESSION {
-            let Some(number) = may_begin.filter(|_| matches!(parsed, Ok(Request::Hello))) else {
-                return Err(LinkError::NoSession);
-            };
-            self.number = number;
+            let Ok(Request::Hello { nonce }) = parsed else { return Err(LinkError::NoSession) };
+            self.number = begin(nonce)?;
         } else if got != due {
             // Half of all numbers are behind, the other half ahead.
             let is_behind = got.wrapping_sub(due) >= 0x8000;

@@ -1,10 +1,14 @@
 //! The host's end of the link.
 
+use firmware::NotStored;
+use firmware::flash::MOST_STORE_MS;
 use firmware::link::{
     Answer, Frame, Info, LinkError, Message, NO_SESSION, Receiver, Refusal, Request, SessionNumber,
     Traced, encode,
 };
+use firmware::watchdog::DISARMED;
 use std::collections::VecDeque;
+use std::hash::{BuildHasher, RandomState};
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
@@ -88,10 +92,12 @@ pub enum HilError {
     Differs(String),
 }
 
-/// Longest wait for an answer: erasing a page of flash takes seconds.
+/// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// After so long without any byte, a request is sent again.
-const AGAIN: Duration = Duration::from_secs(5);
+/// After so long without any byte, a request is sent again: not while the device may still be storing a muscle.
+const AGAIN: Duration = Duration::from_millis(MOST_STORE_MS as u64 + 1_000);
+// A device whose flash never ends is started again by its watchdog, and then says that it knows no session.
+const _: () = assert!(PATIENCE.as_millis() > DISARMED.most_ms() as u128 + AGAIN.as_millis());
 
 /// The same for a greeting.
 const GREET_AGAIN: Duration = Duration::from_millis(300);
@@ -201,6 +207,8 @@ impl<L: Line> Client<L> {
 
     /// Begins a session: greets until there is an answer, for a device that is booting hears nothing.
     pub fn greet(&mut self) -> Result<Info, HilError> {
+        // A map's hash is keyed by the system's random numbers.
+        let nonce = RandomState::new().hash_one(self.sequence) as u32;
         let started = Instant::now();
         let mut sent: Option<Instant> = None;
         let mut refused = None;
@@ -210,7 +218,7 @@ impl<L: Line> Client<L> {
                 self.sequence = sequence.wrapping_add(1);
                 // A zero ends what may have been left on the line.
                 self.send_raw(&[0])?;
-                let hello = encode(NO_SESSION, sequence, &Request::Hello);
+                let hello = encode(NO_SESSION, sequence, &Request::Hello { nonce });
                 self.send_raw(&hello.unwrap_or_default())?;
                 sent = Some(Instant::now());
             }
@@ -296,6 +304,7 @@ fn why(error: LinkError) -> String {
         LinkError::Replayed { sequence } => format!("number {sequence} was acted upon before"),
         LinkError::OutOfOrder { got, due } => format!("number {got} came where {due} was due"),
         LinkError::NotAMessage => "it is no message".to_owned(),
+        LinkError::NoRandomNumber => "its random number generator gives none".to_owned(),
     }
 }
 
@@ -323,7 +332,16 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::Armed => "stimulation is armed".to_owned(),
         Refusal::Empty => "no muscle is at that place".to_owned(),
         Refusal::NoRoom { room } => format!("room for {room} rows"),
-        Refusal::NotStored => "memory did not keep it; what was stored before still is".to_owned(),
+        Refusal::NotStored(reason) => {
+            let reason = match reason {
+                NotStored::TooLong => "it has no room for it",
+                NotStored::Read => "it could not be read",
+                NotStored::Erase => "it was not erased",
+                NotStored::Write => "it was not written",
+                NotStored::Kept => "it did not keep it",
+            };
+            format!("memory: {reason}; what was stored before still is")
+        }
         Refusal::NotArmed(reason) => format!("{reason:?}"),
         Refusal::ChannelTaken { channel, place } => {
             format!("channel {channel} is that of the electrode of muscle {place}")
@@ -333,7 +351,7 @@ fn reason(refusal: &Refusal<'_>) -> String {
 
 fn name(request: &Request) -> &'static str {
     match request {
-        Request::Hello => "hello",
+        Request::Hello { .. } => "hello",
         Request::KeepAlive => "keep alive",
         Request::Upload { .. } => "the upload of a muscle",
         Request::Rest(_) => "rest",

@@ -4,7 +4,8 @@ use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use embedded_storage::nor_flash::NorFlash;
 use firmware::safety::Fault;
 use firmware::{
-    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, RamFlash, Server,
+    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, RamFlash, Randomness,
+    Server,
 };
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Read, Result, Write};
@@ -15,6 +16,16 @@ pub type Memory = RamFlash<8192>;
 /// Of the board that the tests have.
 pub const LIMITS: Limits = Limits::SURFACE.within_scale(&SCALE);
 
+/// As a part's generator of a boot: other numbers from another seed.
+pub struct Numbers(pub u32);
+
+impl Randomness for Numbers {
+    fn number(&mut self, _polls: u32) -> Option<u32> {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        Some(self.0 ^ (self.0 >> 16))
+    }
+}
+
 /// A tick, µs; the timer that calls for ticks counts these.
 const TICK: u32 = 1000;
 /// A host that hears nothing for so many ticks is told so.
@@ -22,7 +33,7 @@ const PATIENCE: u32 = 300;
 
 /// A device and the time. It only passes while the host reads.
 pub struct InProcess<F> {
-    server: Server<'static, F>,
+    server: Server<'static, F, &'static mut dyn Randomness>,
     device: Device<'static>,
     pulses: Pulses<'static, Converter, Pin>,
     /// What it does to a patient.
@@ -44,17 +55,23 @@ impl<F: NorFlash> InProcess<F> {
 
     /// The same with other limits.
     pub fn boot_with(memory: F, limits: Limits) -> Self {
+        Self::boot_of(memory, limits, Box::new(Numbers(0x0DD5_EED5)))
+    }
+
+    /// The same with another source of randomness.
+    pub fn boot_of(memory: F, limits: Limits, randomness: Box<dyn Randomness>) -> Self {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
         let plans: &'static mut PlanQueue = Box::leak(Box::default());
         let gate: &'static Gate = Box::leak(Box::default());
         let lines: &'static mut Lines = Box::leak(Box::default());
+        let randomness: &'static mut dyn Randomness = Box::leak(randomness);
         let (give, take) = plans.split();
         let (tick_ends, link_ends) = lines.split();
         let controller =
             Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate).expect("valid limits");
         Self {
-            server: Server::new(link_ends, gate, memory, TimeStep::MILLISECOND),
+            server: Server::new(link_ends, gate, memory, randomness, TimeStep::MILLISECOND),
             device: Device::new(controller, tick_ends, Deadline::new(TICK, 1)),
             pulses: Pulses::new(stage, take, gate, TICK),
             electrodes,
@@ -114,6 +131,16 @@ impl<F: NorFlash> InProcess<F> {
         if electrodes.cathodic || electrodes.anodic {
             self.flowed = self.flowed.max(electrodes.counts);
         }
+    }
+
+    /// Ticks since boot.
+    pub fn ticks(&self) -> u32 {
+        self.ticks
+    }
+
+    /// Takes what it has to say, without the time's passing.
+    pub fn drain(&mut self) {
+        while self.server.transmit().is_some() {}
     }
 
     /// The most counts that have flowed since this was asked last.

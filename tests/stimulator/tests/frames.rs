@@ -9,9 +9,12 @@ use model_tests::muscles::config;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::io::{Read, Write};
-use stimulator_tests::client::Client;
+use stimulator_tests::client::{Client, NONCE};
 use stimulator_tests::device::{InProcess, Memory};
 use stimulator_tests::host::{READINGS, STIMULUS, arm, booted, fes, report};
+
+/// A greeting.
+const HELLO: Request = Request::Hello { nonce: NONCE };
 
 /// Sends bytes by themselves, and returns all that the device says to them.
 fn reactions(device: &mut InProcess<Memory>, bytes: &[u8]) -> Vec<String> {
@@ -44,7 +47,7 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     // Before a greeting, nothing is done.
     let early = encode(NO_SESSION, 0, &drive).expect("a frame");
     assert_eq!(reaction(&mut device, &early), "NoSession");
-    let hello = encode(NO_SESSION, 65535, &Request::Hello).expect("a frame");
+    let hello = encode(NO_SESSION, 65535, &HELLO).expect("a frame");
     let info = reaction(&mut device, &hello);
     let number = info.split("session: ").nth(1).and_then(|rest| rest.split(',').next());
     let session: SessionNumber = number.and_then(|number| number.parse().ok()).expect("a number");
@@ -132,7 +135,7 @@ fn a_host_of_version_1_is_refused_by_name() {
 #[test]
 fn a_frame_that_the_line_has_lost_a_byte_of_is_not_acted_upon() {
     let mut device = InProcess::boot(Memory::new());
-    let hello = encode(NO_SESSION, 0, &Request::Hello).expect("a frame");
+    let hello = encode(NO_SESSION, 0, &HELLO).expect("a frame");
     for before in 0..hello.len() {
         device.receive_with_a_loss(&hello, before);
         assert_eq!(reaction(&mut device, &[]), "Malformed", "before byte {before}");
@@ -145,7 +148,7 @@ fn a_frame_that_the_line_has_lost_a_byte_of_is_not_acted_upon() {
 fn a_greeting_while_armed_is_a_frame_like_any_other() {
     let mut host = booted();
     arm(&mut host, Fault::Boot);
-    let replayed = encode(NO_SESSION, 0, &Request::Hello).expect("a frame");
+    let replayed = encode(NO_SESSION, 0, &HELLO).expect("a frame");
     host.send_raw(&replayed);
     host.listen();
     assert_eq!(report(&mut host).frames.refused, 1);
@@ -191,7 +194,7 @@ fn a_recorded_session_does_nothing_in_another_one() {
 /// Frames that a fuzzer makes of good ones: cut, joined, flipped, swapped, of any length.
 fn mutated() -> impl Strategy<Value = Vec<u8>> {
     let request = prop_oneof![
-        Just(Request::Hello),
+        any::<u32>().prop_map(|nonce| Request::Hello { nonce }),
         Just(Request::Arm),
         Just(Request::Stop),
         Just(Request::Rest([Some(0.1), None])),
@@ -259,11 +262,8 @@ fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
     let (mut due, mut accepted, mut wrong) = (0_u16, 0_u32, 0_u32);
     session
         .admit(
-            receiver_of(
-                &mut receiver,
-                &encode(NO_SESSION, u16::MAX, &Request::Hello).expect("a frame"),
-            ),
-            Some(SESSION),
+            receiver_of(&mut receiver, &encode(NO_SESSION, u16::MAX, &HELLO).expect("a frame")),
+            |_| Ok(SESSION),
         )
         .expect("a greeting");
     let good: Vec<Vec<u8>> =
@@ -302,7 +302,7 @@ fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
         bytes.push(0);
         for &byte in &bytes {
             let Some(received) = receiver.push(byte, SESSION) else { continue };
-            match session.admit(received, None) {
+            match session.admit(received, |_| Err(LinkError::NoSession)) {
                 Ok(request) => {
                     assert!(requests.contains(&request), "{request:?}");
                     accepted += 1;

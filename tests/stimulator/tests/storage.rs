@@ -119,7 +119,7 @@ fn what_was_never_stored_or_is_worn_is_not_made_up() {
     assert_eq!(slots.load(), None);
     let long = content(1, MOST_STORED);
     slots.store(&long).expect("as much as there is room for");
-    assert_eq!(slots.store(&content(1, MOST_STORED + 1)), Err(NotStored));
+    assert_eq!(slots.store(&content(1, MOST_STORED + 1)), Err(NotStored::TooLong));
     assert_eq!(slots.load(), Some(long.as_slice()));
     // Each byte of the slot that counts, one bit of it flipped: it does not count any more.
     slots.store(&content(2, 60)).expect("room");
@@ -135,6 +135,61 @@ fn what_was_never_stored_or_is_worn_is_not_made_up() {
             worn.write(0, &bytes).expect("a memory");
             let mut slots = Slots::new(worn);
             assert_eq!(slots.load(), Some(long.as_slice()), "byte {offset} bit {bit}");
+        }
+    }
+}
+
+/// A memory whose first reads fail.
+struct Unreadable {
+    memory: RamFlash<BYTES>,
+    fails: usize,
+}
+
+impl ErrorType for Unreadable {
+    type Error = Gone;
+}
+
+impl ReadNorFlash for Unreadable {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Gone> {
+        if self.fails > 0 {
+            self.fails -= 1;
+            return Err(Gone);
+        }
+        self.memory.read(offset, bytes).map_err(|_| Gone)
+    }
+
+    fn capacity(&self) -> usize {
+        BYTES
+    }
+}
+
+impl NorFlash for Unreadable {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = BYTES / 2;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Gone> {
+        self.memory.erase(from, to).map_err(|_| Gone)
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Gone> {
+        self.memory.write(offset, bytes).map_err(|_| Gone)
+    }
+}
+
+/// What cannot be read for a moment may be what counts: nothing is erased then.
+#[test]
+fn a_memory_that_cannot_be_read_loses_nothing() {
+    for slots_used in 1..=2 {
+        let mut slots = Slots::new(RamFlash::<BYTES>::new());
+        (0..slots_used).for_each(|seed| slots.store(&content(seed, 50)).expect("a memory"));
+        let memory = slots.into_memory();
+        for fails in 1..=2 {
+            let mut slots = Slots::new(Unreadable { memory: memory.clone(), fails });
+            assert_eq!(slots.store(&content(9, 60)), Err(NotStored::Read));
+            let mut slots = Slots::new(slots.into_memory().memory);
+            assert_eq!(slots.load(), Some(content(slots_used - 1, 50).as_slice()));
         }
     }
 }

@@ -1,0 +1,64 @@
+//! The independent watchdog.
+
+use super::pac::IWDG;
+use super::reset;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use firmware::watchdog::{self, MOST_CHANGE_MS, Patience, WatchdogRegisters};
+
+/// Whether it waits long enough for flash to hold up the core: set by the tick, asked by the link.
+static PATIENT: AtomicBool = AtomicBool::new(false);
+
+/// See [`PATIENT`].
+pub fn is_patient() -> bool {
+    PATIENT.load(Relaxed)
+}
+
+/// The part's registers.
+struct Registers(IWDG);
+
+impl WatchdogRegisters for Registers {
+    fn start(&mut self) {
+        self.0.kr().write(|w| w.key().start());
+    }
+
+    fn is_changing(&self) -> bool {
+        let status = self.0.sr().read();
+        status.pvu().bit_is_set() || status.rvu().bit_is_set()
+    }
+
+    fn change(&mut self, patience: Patience) {
+        self.0.kr().write(|w| w.key().unlock());
+        self.0.pr().write(|w| w.pr().set(patience.prescaler));
+        self.0.rlr().write(|w| w.rl().set(patience.reload));
+    }
+
+    fn feed(&mut self) {
+        self.0.kr().write(|w| w.key().feed());
+    }
+}
+
+/// Polls of the registers that last longer than any change: at boot the core runs at 16 MHz, and a poll takes it
+/// four clocks at least.
+const POLLS: u32 = MOST_CHANGE_MS * 16_000 / 4;
+
+/// Restarts the chip when ticks stop coming.
+pub struct Watchdog(watchdog::Watchdog<Registers>);
+
+impl Watchdog {
+    /// Running. A part whose watchdog does not is not used: it starts again, in neutral, until it does.
+    pub(super) fn start(registers: IWDG, tick_us: u32) -> Self {
+        let Ok(watchdog) = watchdog::Watchdog::start(Registers(registers), tick_us, POLLS) else {
+            reset()
+        };
+        Self(watchdog)
+    }
+
+    /// A tick has ended in time.
+    pub fn feed(&mut self, armed: bool) {
+        if self.0.feed(armed).is_err() {
+            // Nothing would stop what hangs.
+            reset()
+        }
+        PATIENT.store(self.0.is_patient(), Relaxed);
+    }
+}
