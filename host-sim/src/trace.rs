@@ -1,7 +1,7 @@
 //! Traces in CSV: the inputs of a run, and what came of it.
 
+use crate::output_file::{self, folder_of};
 use crate::reference::{Input, Sample};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Columns that an input file begins with.
@@ -248,31 +248,9 @@ pub fn check_folder(path: &Path) -> Result<(), TraceError> {
     if found.is_dir() { Ok(()) } else { Err(error(std::io::ErrorKind::NotADirectory.into())) }
 }
 
-fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Writes a file beside its place and moves it there; what is no regular file, such as a pipe, is
-/// written to as it is, and a link is followed.
+/// Writes a file as all commands do, see [`output_file::write`].
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
-    let error = |source| file_error(path, source);
-    let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    if place.exists() && !place.is_file() {
-        return std::fs::write(&place, bytes).map_err(error);
-    }
-    let folder = folder_of(&place);
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any new file: the umask takes from it what the user wants taken.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(error)?;
-    file.write_all(bytes).map_err(error)?;
-    file.as_file().sync_all().map_err(error)?;
-    file.persist(&place).map_err(|e| error(e.error))?;
-    Ok(())
+    output_file::write(path, bytes).map_err(|source| file_error(path, source))
 }
 
 /// Whether two paths lead to the same file.

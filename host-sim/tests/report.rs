@@ -29,8 +29,21 @@ fn the_page_has_everything_in_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let (out, cycles) = (folder.path().join("report.html"), folder.path().join("cycles.json"));
     fs::write(&cycles, CYCLES).expect("a file");
+    #[cfg(unix)]
+    let kept = {
+        use std::os::unix::fs::PermissionsExt;
+        fs::write(&out, "as it was").expect("a file");
+        let kept = fs::Permissions::from_mode(0o664);
+        fs::set_permissions(&out, kept.clone()).expect("permissions");
+        kept.mode()
+    };
     let done = report(&out, &cycles);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        assert_eq!(fs::metadata(&out).expect("a page").permissions().mode() & 0o777, kept);
+    }
     let page = fs::read_to_string(&out).expect("a page");
 
     // Nothing is fetched, and nothing runs.
