@@ -3,6 +3,9 @@
 use std::path::Path;
 use std::{env, fs};
 
+/// Of the stimulator's 128 KiB of RAM, what is for its stack; `vm stack` says how much of it is used.
+const STACK_BYTES: u32 = 40 * 1024;
+
 fn main() {
     println!("cargo::rerun-if-changed=../memory.x");
     println!("cargo::rerun-if-env-changed=VM_BENCH_INPUTS");
@@ -30,6 +33,10 @@ fn main() {
             println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
             // The last two sectors are for what outlasts a loss of power.
             println!("cargo::rustc-link-arg-bins=--defsym=_flash_has_storage=1");
+            // Statics are above the stack: where it overflows, there is no memory to write to.
+            println!("cargo::rustc-link-arg-bins=--defsym=_stack_bytes={STACK_BYTES}");
+            println!("cargo::rustc-link-arg-bins=--defsym=_stack_start=0x20000000+{STACK_BYTES}");
+            println!("cargo::rustc-link-arg-bins=--defsym=_stack_end=0x20000000");
         }
     }
 }

@@ -10,6 +10,7 @@
 #![no_main]
 
 mod board;
+mod fault_handlers;
 
 #[rtic::app(device = crate::board::pac, peripherals = true)]
 mod app {
@@ -175,20 +176,6 @@ mod app {
             }
         }
     }
-}
-
-/// What the core cannot go on after, in whatever it was doing.
-#[cortex_m_rt::exception]
-#[allow(unsafe_code)]
-unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
-    board::reset()
-}
-
-/// What nobody has asked for; a crystal that has failed is among it.
-#[cortex_m_rt::exception]
-#[allow(unsafe_code)]
-unsafe fn DefaultHandler(_: i16) {
-    board::reset()
 }
 
 /// Starts again: everything is off at boot.

@@ -3,6 +3,7 @@
 mod arm;
 mod cycles;
 mod hil;
+mod stack;
 mod sweep;
 
 use crate::chart::{Chart, Panel, Point};
@@ -44,6 +45,9 @@ enum Command {
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
     Cycles(cycles::CyclesArgs),
+    /// Compute the deepest stack of the stimulator's tasks, interrupts and boot from its image, and what of its memory
+    /// is left.
+    Stack(stack::StackArgs),
     /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the host's.
     Hil(hil::HilArgs),
     /// Let six muscles move a planar arm of two joints, at constant activations.
@@ -170,6 +174,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => draw(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
+        Command::Stack(args) => stack::run(&args),
         Command::Hil(args) => hil::run(&args).map(|()| true),
         Command::Arm(args) => arm::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),

@@ -17,6 +17,7 @@ pub mod readme;
 pub mod reference;
 pub mod report;
 pub mod scenario;
+pub mod stack;
 pub mod sweep;
 pub mod target;
 pub mod tolerance;

@@ -2,6 +2,7 @@
 
 use crate::cycles::{self, Share};
 use crate::scenario::paper_muscle;
+use crate::stack;
 use crate::trace::{TraceError, write_atomically};
 use crate::verify::{Report, Row};
 use std::collections::BTreeMap;
@@ -32,6 +33,13 @@ pub const CYCLES: Place = Place {
     file: "README.md",
     begin: "<!-- cycles: cargo vm cycles --write -->",
     end: "<!-- end of cycles -->",
+};
+
+/// Where the budget of the stimulator's memory stands.
+pub const STACK: Place = Place {
+    file: "firmware/README.md",
+    begin: "<!-- memory: cargo vm stack --write -->",
+    end: "<!-- end of memory -->",
 };
 
 /// Why the README could not be compared or written.
@@ -149,6 +157,34 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
     let both = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
     let heading = "typ mean, by class (instructions)";
     text.push_str(&side_by_side(heading, &columns(|row| &row.classes), both));
+    text
+}
+
+/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
+pub fn stack(report: &stack::Report) -> String {
+    let mut text =
+        String::from("| what runs | priority | stack, B | deepest in |\n|---|---:|---:|---|\n");
+    for stack::Entry { task, priority, deepest } in &report.entries {
+        let name = deepest.path.last().map_or("", |step| step.function.as_str());
+        text.push_str(&format!("| {task} | {priority} | {} | `{name}` |\n", deepest.bytes));
+    }
+    format!("{text}\n{}", memory(report))
+}
+
+/// The table: what of the stimulator's memory goes where.
+pub fn memory(report: &stack::Report) -> String {
+    let mut text = String::from("| of memory | B | % |\n|---|---:|---:|\n");
+    for (what, bytes) in [
+        ("statics", report.statics),
+        ("deepest stack", report.stack),
+        ("of that, pushed by the core", report.core_frames),
+        ("free", report.free),
+        ("all", report.ram),
+        ("of that, for the stack", report.room_for_stack),
+    ] {
+        let share = 100.0 * f64::from(bytes) / f64::from(report.ram);
+        text.push_str(&format!("| {what} | {bytes} | {share:.1} |\n"));
+    }
     text
 }
 

@@ -57,6 +57,17 @@ pub struct Function {
     pub size: u32,
 }
 
+/// A section of the image that has addresses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// Name.
+    pub name: String,
+    /// First address.
+    pub address: u32,
+    /// Bytes.
+    pub size: u32,
+}
+
 /// An image.
 #[derive(Clone, Debug)]
 pub struct Image {
@@ -64,6 +75,8 @@ pub struct Image {
     pub path: PathBuf,
     /// Address and content of each section.
     sections: Vec<(u32, Vec<u8>)>,
+    /// All sections that have addresses, those without a content as well.
+    places: Vec<Section>,
     /// By address.
     functions: Vec<Function>,
     /// Name and bytes of each constant.
@@ -77,12 +90,15 @@ impl Image {
             .map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
         let parse = |source| ImageError::Parse { path: path.to_owned(), source };
         let file = object::File::parse(&*bytes).map_err(parse)?;
-        let mut sections = Vec::new();
+        let (mut sections, mut places) = (Vec::new(), Vec::new());
         for section in file.sections() {
             // What is not loaded has no address.
             if section.address() != 0 {
                 let content = section.data().map_err(parse)?.to_vec();
-                sections.push((section.address() as u32, content));
+                let (address, size) = (section.address() as u32, section.size() as u32);
+                sections.push((address, content));
+                let name = section.name().map_err(parse)?.to_owned();
+                places.push(Section { name, address, size });
             }
         }
         let mut functions: Vec<Function> = file
@@ -121,7 +137,7 @@ impl Image {
                 functions[index].size = end.saturating_sub(address);
             }
         }
-        Ok(Self { path: path.to_owned(), sections, functions, constants })
+        Ok(Self { path: path.to_owned(), sections, places, functions, constants })
     }
 
     /// Bytes of all constants of a module and those in it.
@@ -154,6 +170,16 @@ impl Image {
         }
     }
 
+    /// All sections that have addresses.
+    pub fn sections(&self) -> &[Section] {
+        &self.places
+    }
+
+    /// The word at an address, if there is one.
+    pub fn word_at(&self, address: u32) -> Option<u32> {
+        self.code_at(address).try_into().ok().map(u32::from_le_bytes)
+    }
+
     /// The function that an address is in.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let after = self.functions.partition_point(|function| function.address <= address);
@@ -167,9 +193,29 @@ impl Image {
             .iter()
             .find_map(|(start, content)| {
                 let offset = address.checked_sub(*start)? as usize;
-                content.get(offset..)
+                // Where one section ends, the next may begin.
+                content.get(offset..).filter(|code| !code.is_empty())
             })
             .map_or(&[], |code| &code[..code.len().min(4)])
+    }
+}
+
+#[cfg(test)]
+impl Image {
+    /// Functions one behind the other, each by its name and halfwords.
+    pub(crate) fn of_code(address: u32, functions: &[(&str, &[u16])]) -> Self {
+        let mut code = Vec::new();
+        let functions = functions
+            .iter()
+            .map(|(name, halfwords)| {
+                let at = address + code.len() as u32;
+                code.extend(halfwords.iter().flat_map(|halfword| halfword.to_le_bytes()));
+                Function { name: (*name).to_owned(), address: at, size: 2 * halfwords.len() as u32 }
+            })
+            .collect();
+        let sections = vec![(address, code)];
+        let (path, places, constants) = (PathBuf::from("test"), Vec::new(), Vec::new());
+        Self { path, sections, places, functions, constants }
     }
 }
 

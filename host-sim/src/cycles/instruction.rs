@@ -87,6 +87,17 @@ impl Instruction {
         self.writes & PROGRAM_COUNTER != 0
     }
 
+    /// What it does, without its operands.
+    pub fn mnemonic(&self) -> &str {
+        self.text.split(' ').next().unwrap_or(&self.text)
+    }
+
+    /// The address that a branch or call names.
+    pub fn target(&self) -> Option<u32> {
+        let digits = self.text.rsplit("#0x").next()?;
+        u32::from_str_radix(digits, 16).ok()
+    }
+
     /// Whether it is a load or store of one word, that can be pipelined with another.
     pub fn is_single_access(&self) -> bool {
         matches!(self.class, Class::Load | Class::Store)

@@ -42,21 +42,21 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
         // step too many is harmless, one too few is not.
         let (goes_on, target) = match instruction.class {
             // A branch by a table (TBB, TBH), which follows.
-            _ if mnemonic(text).starts_with("tb") => {
+            _ if instruction.mnemonic().starts_with("tb") => {
                 reached.indirect.insert(address, text.clone());
                 (false, None)
             }
             // A Cortex-M0 reaches far within a function by BL, and does not come back.
             Class::Call => {
-                let target = target(text);
+                let target = instruction.target();
                 let home = image.function_at(address);
                 let jumps = target.is_some_and(|to| {
                     image.function_at(to) == home && home.is_some_and(|home| home.address != to)
                 });
                 (!jumps, target)
             }
-            Class::Branch => (!matches!(mnemonic(text), "b" | "b.w"), target(text)),
-            Class::BranchToRegister if mnemonic(text) == "bx" && text.ends_with("lr") => {
+            Class::Branch => (!matches!(instruction.mnemonic(), "b" | "b.w"), instruction.target()),
+            Class::BranchToRegister if instruction.mnemonic() == "bx" && text.ends_with("lr") => {
                 (false, None)
             }
             Class::BranchToRegister => {
@@ -75,14 +75,4 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
         ahead.extend(goes_on.then_some(next));
     }
     Ok(reached)
-}
-
-fn mnemonic(text: &str) -> &str {
-    text.split(' ').next().unwrap_or(text)
-}
-
-/// The address that a branch names.
-fn target(text: &str) -> Option<u32> {
-    let digits = text.rsplit("#0x").next()?;
-    u32::from_str_radix(digits, 16).ok()
 }

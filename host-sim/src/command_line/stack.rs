@@ -1,0 +1,81 @@
+//! `vm stack`.
+
+use super::{complain, print};
+use crate::readme;
+use crate::stack::{self, Description, Report};
+use crate::target::{self, STIMULATOR, STM32F405};
+use clap::Args;
+use comfy_table::{CellAlignment, Table, presets};
+use std::error::Error;
+use std::path::PathBuf;
+
+/// `vm stack`: what the stimulator's image takes of its chip's memory.
+#[derive(Debug, Args)]
+pub struct StackArgs {
+    /// The image; without it, the stimulator is built.
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// What the image does not say of its stack, in TOML; without it, firmware/stack.toml.
+    #[arg(long, value_name = "FILE")]
+    description: Option<PathBuf>,
+    /// Print a JSON object instead of tables.
+    #[arg(long)]
+    json: bool,
+    /// Fail where the firmware's README is not what is computed, as well as where anything is unknown or there is not
+    /// enough memory.
+    #[arg(long)]
+    check: bool,
+    /// Write the tables into the firmware's README.
+    #[arg(long, conflicts_with = "check")]
+    write: bool,
+}
+
+/// Runs the command; false if anything is unknown, or there is not enough memory.
+pub fn run(args: &StackArgs) -> Result<bool, Box<dyn Error>> {
+    let elf = match &args.elf {
+        Some(elf) => elf.clone(),
+        None => target::build(STM32F405, STIMULATOR, &[])?,
+    };
+    let described =
+        args.description.clone().unwrap_or_else(|| target::root().join("firmware/stack.toml"));
+    let text = std::fs::read_to_string(&described)
+        .map_err(|error| format!("{}: {error}", described.display()))?;
+    let description: Description =
+        toml::from_str(&text).map_err(|error| format!("{}: {error}", described.display()))?;
+    let report = stack::report(&elf, &description)?;
+    if args.json {
+        print(&serde_json::to_string_pretty(&report)?)?;
+    } else {
+        print(&table(&report))?;
+        print(&format!("\n{}", readme::memory(&report)))?;
+    }
+    report.problems.iter().for_each(|problem| complain(problem));
+    let mut passed = report.problems.is_empty();
+    let tables = readme::stack(&report);
+    if args.write && passed {
+        readme::STACK.write(&tables)?;
+    }
+    if args.check && !readme::STACK.is_current(&tables)? {
+        complain("the firmware's README is not what is computed: cargo vm stack --write");
+        passed = false;
+    }
+    Ok(passed)
+}
+
+/// Each entry with its deepest path, function by function.
+fn table(report: &Report) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["what runs", "priority", "stack B", "deepest path"]);
+    for entry in &report.entries {
+        let path = &entry.deepest.path;
+        let steps: Vec<String> =
+            path.iter().map(|step| format!("{:6} {}", step.bytes, step.function)).collect();
+        let bytes = entry.deepest.bytes.to_string();
+        table.add_row([entry.task.clone(), entry.priority.clone(), bytes, steps.join("\n")]);
+    }
+    if let Some(column) = table.column_mut(2) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}

@@ -1,0 +1,247 @@
+//! The deepest way through all that a function calls.
+
+use super::description::Indirect;
+use super::function::{Call, Functions};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A function on a path of calls.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Step {
+    /// Its name.
+    pub function: String,
+    /// What it holds of the stack when it calls the next one; in the path's last function, the most it takes.
+    pub bytes: u32,
+}
+
+/// The deepest path from a function.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Deepest {
+    /// All of it.
+    pub bytes: u32,
+    /// From the function on.
+    pub path: Vec<Step>,
+}
+
+/// Paths of calls through an image.
+pub(super) struct Calls<'f, 'a> {
+    functions: &'f mut Functions<'a>,
+    indirect: &'f [Indirect],
+    known: BTreeMap<u32, Deepest>,
+    /// From the entry to the function that is being looked at.
+    path: Vec<u32>,
+    /// Not called, whoever calls it.
+    left_out: Option<u32>,
+    /// May begin a stack of its own: it never comes back.
+    pub may_begin: Option<u32>,
+    /// What makes an answer unknown.
+    pub unknown: BTreeSet<String>,
+    /// Indirect calls that were met, by their place in the description.
+    pub used: BTreeSet<usize>,
+}
+
+impl<'f, 'a> Calls<'f, 'a> {
+    pub fn new(functions: &'f mut Functions<'a>, indirect: &'f [Indirect]) -> Self {
+        let (unknown, used) = Default::default();
+        let (known, path) = Default::default();
+        let (left_out, may_begin) = (None, None);
+        Self { functions, indirect, known, path, left_out, may_begin, unknown, used }
+    }
+
+    /// The deepest path from a function that does not go through another.
+    pub fn deepest_without(&mut self, entry: u32, left_out: u32) -> Deepest {
+        self.known.clear();
+        self.left_out = Some(left_out);
+        let deepest = self.deepest(entry);
+        self.left_out = None;
+        self.known.clear();
+        deepest
+    }
+
+    /// The deepest path from a function that begins with these two: the depth of the first at its call counts.
+    pub fn deepest_through(&mut self, entry: u32, first: u32) -> Option<Deepest> {
+        self.functions.walk(entry);
+        let walked = self.functions.known(entry)?.clone();
+        let calls = walked.calls.iter().filter_map(|call| Some((call.target?, call.depth)));
+        let calls: Vec<(u32, u32)> = calls.collect();
+        let mut found: Option<Deepest> = None;
+        for (target, depth) in calls {
+            let behind = if target == first {
+                Some(self.deepest(target))
+            } else {
+                self.deepest_through(target, first)
+            };
+            let Some(behind) = behind else { continue };
+            let here = self.on_top(entry, depth, behind);
+            if found.as_ref().is_none_or(|found| found.bytes < here.bytes) {
+                found = Some(here);
+            }
+        }
+        found
+    }
+
+    /// The deepest path from a function.
+    pub fn deepest(&mut self, entry: u32) -> Deepest {
+        if let Some(known) = self.known.get(&entry) {
+            return known.clone();
+        }
+        if let Some(from) = self.path.iter().position(|&before| before == entry) {
+            let names: Vec<String> =
+                self.path[from..].iter().map(|&address| self.functions.name(address)).collect();
+            self.unknown.insert(format!("recursion: {}, and again", names.join(", ")));
+            return Deepest::default();
+        }
+        self.functions.walk(entry);
+        let Some(walked) = self.functions.known(entry).cloned() else { return Deepest::default() };
+        let name = self.functions.name(entry);
+        for (at, what) in &walked.unknown {
+            self.unknown.insert(format!("{name}, {at:#010x}: {what}"));
+        }
+        if let Some(at) = walked.begins.filter(|_| self.may_begin != Some(entry) || walked.returns)
+        {
+            self.unknown.insert(format!("{name}, {at:#010x}: begins another stack"));
+        }
+        self.path.push(entry);
+        let step = Step { function: name.clone(), bytes: walked.own };
+        let mut deepest = Deepest { bytes: walked.own, path: vec![step] };
+        for call in &walked.calls {
+            for target in self.targets(&name, call) {
+                if self.left_out == Some(target) {
+                    continue;
+                }
+                let behind = self.deepest(target);
+                if call.depth + behind.bytes > deepest.bytes {
+                    deepest = self.on_top(entry, call.depth, behind);
+                }
+            }
+        }
+        self.path.pop();
+        self.known.insert(entry, deepest.clone());
+        deepest
+    }
+
+    fn on_top(&self, entry: u32, depth: u32, behind: Deepest) -> Deepest {
+        let mut path = vec![Step { function: self.functions.name(entry), bytes: depth }];
+        path.extend(behind.path);
+        Deepest { bytes: depth + behind.bytes, path }
+    }
+
+    /// Where a call of a function can lead.
+    fn targets(&mut self, name: &str, call: &Call) -> Vec<u32> {
+        if let Some(target) = call.target {
+            return vec![target];
+        }
+        let described = self.indirect.iter().position(|indirect| indirect.function == name);
+        let Some(index) = described else {
+            self.unknown.insert(format!("{name}, {:#010x}: an indirect call", call.at));
+            return Vec::new();
+        };
+        self.used.insert(index);
+        let mut targets = Vec::new();
+        for target in &self.indirect[index].targets {
+            match self.functions.image.function(target) {
+                Ok(function) => targets.push(function.address),
+                Err(error) => {
+                    self.unknown.insert(format!("{name}, described as calling {target}: {error}"));
+                }
+            }
+        }
+        targets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cycles::Image;
+
+    const HERE: u32 = 0x0800_0000;
+
+    fn deepest(functions: &[(&str, &[u16])], indirect: &[Indirect]) -> (Deepest, Vec<String>) {
+        let image = Image::of_code(HERE, functions);
+        let mut functions = Functions::new(&image).expect("a decoder");
+        let mut calls = Calls::new(&mut functions, indirect);
+        let deepest = calls.deepest(HERE);
+        (deepest, calls.unknown.into_iter().collect())
+    }
+
+    fn names(deepest: &Deepest) -> Vec<(&str, u32)> {
+        deepest.path.iter().map(|step| (step.function.as_str(), step.bytes)).collect()
+    }
+
+    /// push {r7, lr}; bl over so many halfwords; pop {r7, pc}
+    const fn calls_behind(halfwords: u16) -> [u16; 4] {
+        [0xB580, 0xF000, 0xF800 + halfwords, 0xBD80]
+    }
+
+    #[test]
+    fn the_deeper_of_two_callees_counts_from_where_it_is_called() {
+        // push {r7, lr}; bl g; sub sp, #32; bl h; add sp, #32; pop {r7, pc}
+        let f: &[u16] = &[0xB580, 0xF000, 0xF805, 0xB088, 0xF000, 0xF804, 0xB008, 0xBD80];
+        // push {r4-r7, lr}; pop {r4-r7, pc}
+        let g: &[u16] = &[0xB5F0, 0xBDF0];
+        let (found, unknown) = deepest(&[("f", f), ("g", g), ("h", &[0xB510, 0xBD10])], &[]);
+        assert_eq!((found.bytes, names(&found)), (48, vec![("f", 40), ("h", 8)]));
+        assert_eq!(unknown, Vec::<String>::new());
+    }
+
+    #[test]
+    fn recursion_is_unknown_and_names_the_circle() {
+        // f calls g, which calls f.
+        let g: &[u16] = &[0xB580, 0xF7FF, 0xFFF9, 0xBD80];
+        let (_, unknown) = deepest(&[("f", &calls_behind(1)), ("g", g)], &[]);
+        assert_eq!(unknown, ["recursion: f, g, and again"]);
+    }
+
+    #[test]
+    fn only_what_never_comes_back_may_begin_another_stack() {
+        // msr msp, r0; b .
+        let ends: [(&str, &[u16]); 1] = [("f", &[0xF380, 0x8808, 0xE7FE])];
+        let returns: [(&str, &[u16]); 1] = [("f", &[0xF380, 0x8808, 0x4770])];
+        for (functions, may, unknown) in [(ends, true, 0), (ends, false, 1), (returns, true, 1)] {
+            let image = Image::of_code(HERE, &functions);
+            let mut functions = Functions::new(&image).expect("a decoder");
+            let mut calls = Calls::new(&mut functions, &[]);
+            calls.may_begin = may.then_some(HERE);
+            calls.deepest(HERE);
+            assert_eq!(calls.unknown.len(), unknown, "{:?}", calls.unknown);
+        }
+    }
+
+    #[test]
+    fn an_indirect_call_is_unknown_unless_the_description_says_where_it_leads() {
+        // push {r7, lr}; blx r0; pop {r7, pc}
+        let functions: [(&str, &[u16]); 2] =
+            [("f", &[0xB580, 0x4780, 0xBD80]), ("g", &[0xB5F0, 0xBDF0])];
+        let (_, unknown) = deepest(&functions, &[]);
+        assert_eq!(unknown, ["f, 0x08000002: an indirect call"]);
+        let described = |target: &str| Indirect {
+            function: "f".to_owned(),
+            targets: vec![target.to_owned()],
+            reason: "a test".to_owned(),
+        };
+        let (found, unknown) = deepest(&functions, &[described("g")]);
+        assert_eq!((found.bytes, unknown.len()), (28, 0));
+        let (_, unknown) = deepest(&functions, &[described("h")]);
+        assert!(unknown[0].contains("described as calling h"), "{unknown:?}");
+    }
+
+    #[test]
+    fn a_part_of_a_path_can_be_looked_at_and_left_out() {
+        let image = Image::of_code(
+            HERE,
+            &[
+                // push {r7, lr}; bl boot; bl rest; pop {r7, pc}
+                ("f", &[0xB580, 0xF000, 0xF803, 0xF000, 0xF803, 0xBD80]),
+                ("boot", &[0xB5F0, 0xBDF0]),
+                ("rest", &[0xB510, 0xBD10]),
+            ],
+        );
+        let mut functions = Functions::new(&image).expect("a decoder");
+        let mut calls = Calls::new(&mut functions, &[]);
+        let boot = HERE + 12;
+        assert_eq!(calls.deepest(HERE).bytes, 28);
+        assert_eq!(calls.deepest_without(HERE, boot).bytes, 16);
+        let through = calls.deepest_through(HERE, boot).expect("a path");
+        assert_eq!(names(&through), [("f", 8), ("boot", 20)]);
+    }
+}

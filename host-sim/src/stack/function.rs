@@ -1,0 +1,308 @@
+//! One function: how deep it goes by itself, and from how deep it calls others.
+
+use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack};
+use crate::cycles::{Decoded, Image};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A call, or a jump to another function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Call {
+    /// Where it is.
+    pub at: u32,
+    /// Bytes of stack that its function holds then.
+    pub depth: u32,
+    /// The function's first address; none if it is not in the instruction.
+    pub target: Option<u32>,
+}
+
+/// A function, walked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Walked {
+    /// Most that it takes by itself, bytes.
+    pub own: u32,
+    /// Whom it calls.
+    pub calls: BTreeSet<Call>,
+    /// Whether it ever comes back.
+    pub returns: bool,
+    /// Where it begins another stack, if it does.
+    pub begins: Option<u32>,
+    /// What cannot be told, by address.
+    pub unknown: BTreeMap<u32, String>,
+}
+
+/// All functions that were walked so far.
+pub(super) struct Functions<'a> {
+    pub image: &'a Image,
+    decoded: Decoded<'a>,
+    /// None while a function is walked: it calls itself, by others or at once.
+    walked: BTreeMap<u32, Option<Walked>>,
+}
+
+/// Depths that one instruction can be met at: more is a stack that grows in a loop.
+const MOST_DEPTHS: usize = 8;
+
+impl<'a> Functions<'a> {
+    pub fn new(image: &'a Image) -> Result<Self, capstone::Error> {
+        Ok(Self { image, decoded: Decoded::new(image)?, walked: BTreeMap::new() })
+    }
+
+    /// Name of the function that begins at an address.
+    pub fn name(&self, address: u32) -> String {
+        match self.image.function_at(address) {
+            Some(function) if function.address == address => function.name.clone(),
+            Some(function) => format!("{} + {:#x}", function.name, address - function.address),
+            None => format!("{address:#010x}"),
+        }
+    }
+
+    /// A function that was walked before.
+    pub fn known(&self, address: u32) -> Option<&Walked> {
+        self.walked.get(&address)?.as_ref()
+    }
+
+    /// Walks a function and all that it calls.
+    pub fn walk(&mut self, entry: u32) {
+        if self.walked.contains_key(&entry) {
+            return;
+        }
+        self.walked.insert(entry, None);
+        let walked = self.walk_one(entry);
+        let targets: Vec<u32> = walked.calls.iter().filter_map(|call| call.target).collect();
+        self.walked.insert(entry, Some(walked));
+        targets.into_iter().for_each(|target| self.walk(target));
+    }
+
+    /// Whether a function comes back; one that is being walked counts as if it did.
+    fn returns(&mut self, entry: u32) -> bool {
+        self.walk(entry);
+        self.known(entry).is_none_or(|walked| walked.returns)
+    }
+
+    fn walk_one(&mut self, entry: u32) -> Walked {
+        let mut walked = Walked::default();
+        let Some(home) = self.image.function_at(entry) else {
+            walked.unknown.insert(entry, "no function is known there".to_owned());
+            return walked;
+        };
+        let inside = home.address..home.address + home.size;
+        let mut depths: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut conditional = BTreeSet::new();
+        let mut ahead = vec![(entry, 0_u32)];
+        while let Some((at, depth)) = ahead.pop() {
+            let seen = depths.entry(at).or_default();
+            // Deeper than before, or nothing new.
+            if seen.last().is_some_and(|&before| before >= depth) {
+                continue;
+            }
+            seen.push(depth);
+            if seen.len() > MOST_DEPTHS {
+                walked.unknown.insert(at, "the stack grows in a loop".to_owned());
+                return walked;
+            }
+            let instruction = match self.decoded.at(at) {
+                Ok(instruction) if inside.contains(&at) => instruction.clone(),
+                _ => {
+                    walked.unknown.insert(at, "runs off its end".to_owned());
+                    continue;
+                }
+            };
+            let unknown = &mut walked.unknown;
+            let mut unknown = |what: &str| {
+                unknown.insert(at, format!("{what}: {}", instruction.text));
+            };
+            let next = at + instruction.size;
+            let mut behind = next;
+            for _ in 0..conditional_behind(&instruction) {
+                conditional.insert(behind);
+                behind += self.decoded.at(behind).map_or(2, |instruction| instruction.size);
+            }
+            let moved = match on_stack(&instruction) {
+                OnStack::Moves(bytes) => i64::from(depth) - i64::from(bytes),
+                OnStack::Dynamic => {
+                    unknown("a frame whose size is not in the instruction");
+                    i64::from(depth)
+                }
+                OnStack::Begins => {
+                    walked.begins = Some(at);
+                    i64::from(depth)
+                }
+            };
+            let Ok(after) = u32::try_from(moved) else {
+                unknown("takes from the stack what is not its own");
+                continue;
+            };
+            walked.own = walked.own.max(after);
+            let call = |target| Call { at, depth: after, target };
+            // What may not execute leaves the stack as it was.
+            let may_not = conditional.contains(&at);
+            let mut goes_on = may_not.then_some(after.max(depth));
+            let mut jumps = Vec::new();
+            match goes(&instruction) {
+                Goes::On => goes_on = Some(goes_on.unwrap_or(after)),
+                Goes::To(target) => jumps.push(target),
+                Goes::ToOrOn(target) => {
+                    jumps.push(target);
+                    goes_on = Some(after);
+                }
+                Goes::Call(target) => {
+                    walked.calls.insert(call(Some(target)));
+                    if self.returns(target) {
+                        goes_on = Some(after);
+                    }
+                }
+                Goes::IndirectCall => {
+                    walked.calls.insert(call(None));
+                    goes_on = Some(after);
+                }
+                Goes::IndirectJump => {
+                    walked.calls.insert(call(None));
+                    walked.returns = true;
+                }
+                Goes::Table(bytes) => match self.table(next, bytes) {
+                    Some(targets) => jumps.extend(targets),
+                    None => unknown("a table that cannot be read"),
+                },
+                Goes::Return => {
+                    walked.returns = true;
+                    if after != 0 {
+                        unknown("returns with something on the stack");
+                    }
+                }
+                Goes::Nowhere => (),
+            }
+            for target in jumps {
+                if inside.contains(&target) && (target != entry || after == 0) {
+                    ahead.push((target, after));
+                } else {
+                    // A tail call.
+                    walked.calls.insert(call(Some(target)));
+                    walked.returns |= self.returns(target);
+                }
+            }
+            ahead.extend(goes_on.map(|depth| (next, depth)));
+        }
+        walked
+    }
+
+    /// Where the table of a TBB or TBH leads, of entries of 1 or 2 bytes: it ends where the first of its targets is.
+    fn table(&self, start: u32, bytes: u32) -> Option<BTreeSet<u32>> {
+        let mut targets = BTreeSet::new();
+        let mut at = start;
+        while targets.first().is_none_or(|&first| at < first) {
+            let entry = match (self.image.code_at(at), bytes) {
+                ([byte, ..], 1) => u32::from(*byte),
+                ([low, high, ..], 2) => u32::from(u16::from_le_bytes([*low, *high])),
+                _ => return None,
+            };
+            // Nothing leads into the table: a byte that only fills it up.
+            if entry != 0 {
+                targets.insert(start + 2 * entry);
+            }
+            at += bytes;
+        }
+        Some(targets)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: u32 = 0x0800_0000;
+
+    /// The first function, walked.
+    fn walked(functions: &[(&str, &[u16])]) -> Walked {
+        let image = Image::of_code(HERE, functions);
+        let mut functions = Functions::new(&image).expect("a decoder");
+        functions.walk(HERE);
+        functions.known(HERE).expect("walked").clone()
+    }
+
+    /// What a function without calls takes.
+    fn own(code: &[u16]) -> u32 {
+        let walked = walked(&[("f", code)]);
+        assert_eq!(walked.unknown, BTreeMap::new());
+        assert!(walked.returns);
+        walked.own
+    }
+
+    fn only_unknown(code: &[u16]) -> String {
+        let walked = walked(&[("f", code), ("g", &[0x4770])]);
+        let all: Vec<String> = walked.unknown.into_values().collect();
+        assert_eq!(all.len(), 1, "{code:x?}: {all:?}");
+        all[0].clone()
+    }
+
+    #[test]
+    fn prologues_of_every_kind_count() {
+        // bx lr
+        assert_eq!(own(&[0x4770]), 0);
+        // push {r4-r7, lr}; sub sp, #16; add sp, #16; pop {r4-r7, pc}
+        assert_eq!(own(&[0xB5F0, 0xB084, 0xB004, 0xBDF0]), 36);
+        // push {r7, lr}; sub.w sp, sp, #8192; add.w sp, sp, #8192; pop {r7, pc}
+        assert_eq!(own(&[0xB580, 0xF5AD, 0x5D00, 0xF50D, 0x5D00, 0xBD80]), 8200);
+        // stmdb sp!, {r4-r11, lr}; vpush {d8, d9}; vpop {d8, d9}; ldmia sp!, {r4-r11, pc}
+        assert_eq!(own(&[0xE92D, 0x4FF0, 0xED2D, 0x8B04, 0xECBD, 0x8B04, 0xE8BD, 0x8FF0]), 36 + 16);
+        // str lr, [sp, #-8]!; ldr pc, [sp], #8
+        assert_eq!(own(&[0xF84D, 0xED08, 0xF85D, 0xFB08]), 8);
+    }
+
+    #[test]
+    fn a_return_that_is_conditional_goes_on_as_deep_as_it_was() {
+        // push {r4, lr}; cmp r0, #0; it eq; popeq {r4, pc}; sub sp, #8; add sp, #8; pop {r4, pc}
+        assert_eq!(own(&[0xB510, 0x2800, 0xBF08, 0xBD10, 0xB082, 0xB002, 0xBD10]), 16);
+    }
+
+    #[test]
+    fn calls_and_tail_calls_are_made_from_the_depth_there_is_then() {
+        // push {r7, lr}; bl g; pop.w {r7, lr}; b.w h
+        let f = [0xB580, 0xF000, 0xF804, 0xE8BD, 0x4080, 0xF000, 0xB801];
+        let walked = walked(&[("f", &f), ("g", &[0x4770]), ("h", &[0x4770])]);
+        let calls: Vec<_> = walked.calls.iter().map(|call| (call.depth, call.target)).collect();
+        assert_eq!(calls, [(8, Some(HERE + 14)), (0, Some(HERE + 16))]);
+        assert_eq!((walked.own, walked.returns, walked.unknown.len()), (8, true, 0));
+    }
+
+    #[test]
+    fn behind_a_call_that_never_returns_there_is_nothing() {
+        // push {r7, lr}; bl g, behind which f ends. g: b .
+        let f: &[u16] = &[0xB580, 0xF000, 0xF800];
+        let never = walked(&[("f", f), ("g", &[0xE7FE])]);
+        assert_eq!((never.unknown.len(), never.returns), (0, false));
+        let returns = walked(&[("f", f), ("g", &[0x4770])]);
+        assert_eq!(returns.unknown.values().collect::<Vec<_>>(), ["runs off its end"]);
+    }
+
+    #[test]
+    fn all_that_a_table_leads_to_is_walked() {
+        // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7, lr}; pop {r4-r7, pc}
+        let code = [0xE8DF, 0xF000, 0x0302, 0x0005, 0x4770, 0xB510, 0xBD10, 0xB5F0, 0xBDF0];
+        assert_eq!(own(&code), 20);
+    }
+
+    #[test]
+    fn what_is_not_in_the_instructions_is_unknown() {
+        // sub sp, r0; bx lr
+        assert!(only_unknown(&[0xEBAD, 0x0D00, 0x4770]).contains("sub.w sp, sp, r0"));
+        // mov sp, r7; bx lr
+        assert!(only_unknown(&[0x46BD, 0x4770]).contains("mov sp, r7"));
+        // msr msp, r0; bx lr
+        assert_eq!(walked(&[("f", &[0xF380, 0x8808, 0x4770])]).begins, Some(HERE));
+        // nop; push {r0}; b to the push
+        assert_eq!(only_unknown(&[0xBF00, 0xB401, 0xE7FD]), "the stack grows in a loop");
+        // push {r4}; bx lr
+        assert!(only_unknown(&[0xB410, 0x4770]).contains("returns with something"));
+        // pop {r4, pc} without a push
+        assert!(only_unknown(&[0xBD10]).contains("not its own"));
+    }
+
+    #[test]
+    fn indirect_calls_and_jumps_have_no_target() {
+        // blx r0; bx lr. bx r1. mov pc, r0. ldr.w pc, [r0]
+        for code in [&[0x4780, 0x4770][..], &[0x4708], &[0x4687], &[0xF8D0, 0xF000]] {
+            let walked = walked(&[("f", code)]);
+            let targets: Vec<_> = walked.calls.iter().map(|call| call.target).collect();
+            assert_eq!(targets, [None], "{code:x?}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The budget of a chip's memory: statics, the deepest stack, and what is left.
+
+use super::calls::{Calls, Deepest};
+use super::description::{Description, Priority};
+use super::function::Functions;
+use crate::cycles::{Image, ImageError};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum StackError {
+    /// The image cannot be read.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// The disassembler did not start.
+    #[error("the disassembler: {0}")]
+    Decoder(#[from] capstone::Error),
+    /// The image has no vector table.
+    #[error("{0}: no section .vector_table")]
+    NoVectors(String),
+}
+
+/// What runs on the stack.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Entry {
+    /// What it does.
+    pub task: String,
+    /// `thread`, a priority, or `fault`.
+    pub priority: String,
+    /// Its deepest path, without what the core pushes before it.
+    pub deepest: Deepest,
+}
+
+/// What a program takes of its chip's memory, bytes.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Report {
+    /// All that runs.
+    pub entries: Vec<Entry>,
+    /// What the core pushes when all of them interrupt each other.
+    pub core_frames: u32,
+    /// All of them interrupting each other.
+    pub stack: u32,
+    /// From the first address of memory to where the stack begins.
+    pub room_for_stack: u32,
+    /// Everything in memory that is not the stack.
+    pub statics: u32,
+    /// Memory of the chip.
+    pub ram: u32,
+    /// What neither takes.
+    pub free: u32,
+    /// What is wrong or unknown.
+    pub problems: Vec<String>,
+}
+
+/// What the core pushes before a handler: 26 words with those of the floating-point unit, for which it keeps room in
+/// any case, and one to align them.
+const EXCEPTION_FRAME: u32 = 26 * 4 + 4;
+
+/// Computes what an image takes.
+pub fn report(path: &Path, description: &Description) -> Result<Report, StackError> {
+    let image = Image::read(path)?;
+    let mut functions = Functions::new(&image)?;
+    let mut problems = BTreeSet::new();
+    let (vectors, top) = vectors(&image, description, &mut problems)?;
+    let mut calls = Calls::new(&mut functions, &description.indirect);
+
+    let thread = image.function(&description.thread.entry)?.address;
+    let boot = image.function(&description.thread.boot)?.address;
+    let mut entries = Vec::new();
+    let mut add = |task: &str, priority: String, deepest: &Deepest| {
+        entries.push(Entry { task: task.to_owned(), priority, deepest: deepest.clone() });
+    };
+    let of_boot = calls.deepest_through(thread, boot).unwrap_or_default();
+    add("boot", "thread".to_owned(), &of_boot);
+    let of_idle = calls.deepest_without(thread, boot);
+    add("idle", "thread".to_owned(), &of_idle);
+    let mut levels: BTreeMap<Priority, u32> = BTreeMap::new();
+    for handler in &description.handlers {
+        let Some(&address) = vectors.get(&handler.vector) else { continue };
+        let ends = matches!(handler.priority, Priority::Ends(_));
+        calls.may_begin = ends.then_some(address);
+        let deepest = calls.deepest(address);
+        if ends && deepest.bytes != 0 {
+            let needs = format!("{}: it needs {} B of stack", handler.function, deepest.bytes);
+            problems.insert(needs);
+        }
+        let level = levels.entry(handler.priority).or_default();
+        *level = deepest.bytes.max(*level);
+        let priority = match handler.priority {
+            Priority::Level(level) => level.to_string(),
+            Priority::Ends(_) => "fault".to_owned(),
+        };
+        add(&handler.task, priority, &deepest);
+    }
+    let default_handler = image.function(&description.default_handler)?.address;
+    calls.may_begin = Some(default_handler);
+    let of_default = calls.deepest(default_handler);
+    add("all other vectors", "any".to_owned(), &of_default);
+
+    problems.extend(calls.unknown);
+    for (index, indirect) in description.indirect.iter().enumerate() {
+        if !calls.used.contains(&index) {
+            problems.insert(format!("stale: no indirect call in {}", indirect.function));
+        }
+    }
+    let steps = entries.iter().flat_map(|entry| &entry.deepest.path);
+    for step in steps.filter(|step| step.bytes > description.ram.guard_bytes) {
+        problems.insert(format!(
+            "{} takes {} B: it may step over the {} B below memory",
+            step.function, step.bytes, description.ram.guard_bytes
+        ));
+    }
+
+    // Each priority once, and what is unexpected on top of all.
+    let interruptions = levels.len() as u32 + 1;
+    let core_frames = interruptions * EXCEPTION_FRAME;
+    let stack = of_boot.bytes.max(of_idle.bytes)
+        + levels.values().sum::<u32>()
+        + of_default.bytes
+        + core_frames;
+    let (statics, room_for_stack) = memory(&image, description, top, &mut problems);
+    let ram = description.ram.bytes;
+    let free = ram.saturating_sub(statics + stack);
+    if stack > room_for_stack {
+        problems.insert(format!("the stack takes {stack} B, and has {room_for_stack}"));
+    }
+    let least = description.ram.least_free_percent;
+    if u64::from(free) * 100 < u64::from(ram) * u64::from(least) {
+        problems.insert(format!("{free} B of {ram} are free: less than {least} %"));
+    }
+    let problems = problems.into_iter().collect();
+    Ok(Report { entries, core_frames, stack, room_for_stack, statics, ram, free, problems })
+}
+
+/// The described vectors' functions, and where the stack begins.
+fn vectors(
+    image: &Image,
+    description: &Description,
+    problems: &mut BTreeSet<String>,
+) -> Result<(BTreeMap<u32, u32>, u32), StackError> {
+    let table = image.sections().iter().find(|section| section.name == ".vector_table");
+    let table =
+        table.ok_or_else(|| StackError::NoVectors(image.path.display().to_string()))?.clone();
+    let word = |index: u32| image.word_at(table.address + 4 * index).unwrap_or(0);
+    let name = |index: u32| {
+        let function = image.function_at(word(index) & !1);
+        function.map_or("nothing that is known", |function| function.name.as_str())
+    };
+    let mut found = BTreeMap::new();
+    let mut expected = BTreeMap::from([(1, description.thread.entry.as_str())]);
+    for handler in &description.handlers {
+        if expected.insert(handler.vector, &handler.function).is_some() {
+            problems.insert(format!("vector {} is described twice", handler.vector));
+        }
+    }
+    for index in (1..table.size / 4).filter(|&index| word(index) != 0) {
+        let expected = expected.remove(&index).unwrap_or(&description.default_handler);
+        if name(index) != expected {
+            let name = name(index);
+            problems.insert(format!("vector {index} is {name}, and described as {expected}"));
+        }
+        found.insert(index, word(index) & !1);
+    }
+    for (index, function) in expected {
+        problems.insert(format!("vector {index}, described as {function}, is not there"));
+    }
+    Ok((found, word(0)))
+}
+
+/// Bytes of statics, and of what is below where the stack begins.
+fn memory(
+    image: &Image,
+    description: &Description,
+    top: u32,
+    problems: &mut BTreeSet<String>,
+) -> (u32, u32) {
+    let ram = description.ram.start..description.ram.start + description.ram.bytes;
+    let mut statics = 0;
+    for section in image.sections().iter().filter(|section| ram.contains(&section.address)) {
+        statics += section.size;
+        if section.address < top && section.size > 0 {
+            problems.insert(format!("{} is below the stack, which may overflow", section.name));
+        }
+    }
+    if !(ram.start..=ram.end).contains(&top) {
+        problems.insert(format!("the stack begins at {top:#010x}, outside of memory"));
+    }
+    (statics, top.saturating_sub(ram.start))
+}
