@@ -21,8 +21,8 @@ use cortex_m::peripheral::syst::SystClkSource;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 use firmware::flash::Flash;
 use firmware::safety::{CHANNELS, Fault};
-use firmware::{Bridge, OutputStage, Pulses, RamFlash, Scale};
-pub use memory::Memory;
+use firmware::{Bridge, OutputStage, Pulses, Scale};
+pub use memory::{EmulatedFlash, Memory};
 pub use noise::Numbers;
 use stm32f4xx_hal::gpio::{ErasedPin, Output, PushPull, Speed};
 use stm32f4xx_hal::nb;
@@ -81,7 +81,12 @@ fn is_emulated(rcc: &RCC) -> bool {
 
 impl Board {
     /// Outputs first, then everything else; ticks of so many µs.
-    pub fn start(mut core: cortex_m::Peripherals, device: pac::Peripherals, tick_us: u32) -> Self {
+    pub fn start(
+        mut core: cortex_m::Peripherals,
+        device: pac::Peripherals,
+        tick_us: u32,
+        ram: &'static mut EmulatedFlash,
+    ) -> Self {
         let is_emulated = is_emulated(&device.RCC);
         let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
@@ -146,7 +151,7 @@ impl Board {
             to_host: ToHost(to_host),
             from_host: FromHost(from_host),
             memory: if is_emulated {
-                Memory::Ram(RamFlash::new())
+                Memory::Ram(ram)
             } else {
                 Memory::Flash(Flash::new(memory::Controller::new(device.FLASH)))
             },

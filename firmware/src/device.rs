@@ -34,15 +34,17 @@ pub const TYPES: usize = 2;
 /// Rows that can wait for their tick, and their outputs for the link.
 const WAITING: usize = 64;
 
+/// The muscles of all places. There are two that tick and link give each other, for a muscle is too large for a queue,
+/// and for the stack.
+pub(crate) type Bank = [Option<Driven>; MUSCLES];
+
 /// What the link asks of the tick.
-#[derive(Clone, Debug)]
-// A muscle is copied into the tick's place at once; nothing here is boxed.
-#[allow(clippy::large_enum_variant)]
+#[derive(Debug)]
 pub(crate) enum Order {
-    /// A muscle for a place.
-    Load(usize, Driven),
+    /// A place's muscle, of a bank that has it there.
+    Load(usize, &'static mut Bank),
     /// All muscles of places that have one, at rest; rows count from 0.
-    Rest([Option<Driven>; MUSCLES]),
+    Rest(&'static mut Bank),
     Drive(Guarded<Stimuli>),
     Readings(Readings),
     Acknowledge(Fault),
@@ -53,9 +55,11 @@ pub(crate) enum Order {
 }
 
 /// What the tick answers: one outcome for each order.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) enum Outcome {
     Done,
+    /// The same, with a bank that the tick does not need.
+    Took(&'static mut Bank),
     NotArmed(NotArmed),
     Report(Report),
     Words(Vec<u32, MOST_WORDS>),
@@ -82,6 +86,8 @@ pub struct Lines {
     outcomes: Queue<Outcome, 2>,
     rows: Queue<Guarded<Row>, WAITING>,
     traces: Queue<Traced, WAITING>,
+    muscles: Bank,
+    spare: Bank,
 }
 
 impl Default for Lines {
@@ -98,11 +104,13 @@ impl Lines {
             outcomes: Queue::new(),
             rows: Queue::new(),
             traces: Queue::new(),
+            muscles: [const { None }; MUSCLES],
+            spare: [const { None }; MUSCLES],
         }
     }
 
     /// The tick's ends and the link's.
-    pub fn split(&mut self) -> (TickEnds<'_>, LinkEnds<'_>) {
+    pub fn split(&'static mut self) -> (TickEnds<'static>, LinkEnds<'static>) {
         let (give_order, take_order) = self.orders.split();
         let (give_outcome, take_outcome) = self.outcomes.split();
         let (give_row, take_row) = self.rows.split();
@@ -113,12 +121,14 @@ impl Lines {
                 outcomes: give_outcome,
                 rows: take_row,
                 traces: give_trace,
+                muscles: &mut self.muscles,
             },
             LinkEnds {
                 orders: give_order,
                 outcomes: take_outcome,
                 rows: give_row,
                 traces: take_trace,
+                spare: Some(&mut self.spare),
             },
         )
     }
@@ -130,6 +140,7 @@ pub struct TickEnds<'q> {
     outcomes: Producer<'q, Outcome>,
     rows: Consumer<'q, Guarded<Row>>,
     traces: Producer<'q, Traced>,
+    muscles: &'static mut Bank,
 }
 
 /// The link's ends of [`Lines`].
@@ -138,6 +149,8 @@ pub struct LinkEnds<'q> {
     pub(crate) outcomes: Consumer<'q, Outcome>,
     pub(crate) rows: Producer<'q, Guarded<Row>>,
     pub(crate) traces: Consumer<'q, Traced>,
+    /// None while the tick has it.
+    pub(crate) spare: Option<&'static mut Bank>,
 }
 
 /// What asks for current, and how long ago it came.
@@ -165,7 +178,6 @@ pub struct Device<'q> {
     controller: Controller<'q>,
     ends: TickEnds<'q>,
     deadline: Deadline,
-    muscles: [Option<Driven>; MUSCLES],
     /// What was asked for by itself, of channels that no electrode of a muscle has.
     drive: Aged<Stimuli>,
     /// What the last row asks for, of channels that electrodes of muscles have.
@@ -189,7 +201,6 @@ impl<'q> Device<'q> {
             controller,
             ends,
             deadline,
-            muscles: [const { None }; MUSCLES],
             drive: Aged::new(NO_STIMULI),
             demand: Aged::new(NO_DEMAND),
             readings: Readings::default(),
@@ -215,7 +226,7 @@ impl<'q> Device<'q> {
         }
         self.obey();
         let mut memory_is_intact = true;
-        for driven in self.muscles.iter_mut().flatten() {
+        for driven in self.ends.muscles.iter_mut().flatten() {
             memory_is_intact &= driven.check();
         }
         self.advance();
@@ -319,22 +330,24 @@ impl<'q> Device<'q> {
 
     fn outcome(&mut self, order: Order) -> Outcome {
         match order {
-            Order::Load(place, driven) => {
-                if let Some(muscle) = self.muscles.get_mut(place) {
-                    *muscle = Some(driven);
+            Order::Load(place, bank) => {
+                if let (Some(muscle), Some(&loaded)) =
+                    (self.ends.muscles.get_mut(place), bank.get(place))
+                {
+                    *muscle = loaded;
                 }
                 // Electrodes may have other channels now.
                 self.drive = Aged::new(NO_STIMULI);
                 self.demand = Aged::new(NO_DEMAND);
-                Outcome::Done
+                Outcome::Took(bank)
             }
-            Order::Rest(muscles) => {
-                self.muscles = muscles;
+            Order::Rest(bank) => {
+                let before = core::mem::replace(&mut self.ends.muscles, bank);
                 self.rows = 0;
                 // What waited belongs to the time before.
                 while self.ends.rows.dequeue().is_some() {}
                 self.demand = Aged::new(NO_DEMAND);
-                Outcome::Done
+                Outcome::Took(before)
             }
             Order::Drive(stimuli) => {
                 self.drive = Aged::of(stimuli);
@@ -362,7 +375,7 @@ impl<'q> Device<'q> {
                 // The link knows.
                 frames: Default::default(),
             }),
-            Order::Words(place) => match self.muscles.get(place) {
+            Order::Words(place) => match self.ends.muscles.get(place) {
                 Some(Some(driven)) => Outcome::Words(driven.words()),
                 _ => Outcome::Empty,
             },
@@ -380,7 +393,7 @@ impl<'q> Device<'q> {
         let mut demands = NO_DEMAND;
         self.row_lost = row.get().is_none();
         let inputs = row.get().into_iter().flatten();
-        let places = self.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
+        let places = self.ends.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
         for (((muscle, inputs), output), demand) in places {
             let Some(driven) = muscle else { continue };
             *output = driven.step(inputs);

@@ -40,7 +40,8 @@ impl Sum for Demand {
 }
 
 /// A muscle with its state, what stimulates it, and checksums of all of it as they were left.
-#[derive(Clone, Debug)]
+// Copied from place to place: a clone would be made on the stack, field by field.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Driven {
     muscle: BankedMuscle<f32, TYPES>,
     electrode: Option<(Electrode, RecruitmentCurve<f32>)>,
@@ -72,15 +73,14 @@ impl Driven {
         Ok(driven)
     }
 
-    /// The same at rest on a path (m), refused where the muscle cannot be.
-    pub(crate) fn at_rest(&self, path_length: f32) -> Result<Self, Refusal<'static>> {
-        let mut rested = self.clone();
-        match &mut rested.muscle {
+    /// Puts it at rest on a path (m), refused where the muscle cannot be; then it stays where it was.
+    pub(crate) fn rest(&mut self, path_length: f32) -> Result<(), Refusal<'static>> {
+        match &mut self.muscle {
             BankedMuscle::Continuous(muscle, state) => *state = muscle.rest(path_length)?,
             BankedMuscle::Fes(muscle, state) => *state = muscle.rest(path_length)?,
         }
-        rested.checksums[1] = rested.muscle.state_checksum();
-        Ok(rested)
+        self.checksums[1] = self.muscle.state_checksum();
+        Ok(())
     }
 
     /// Whether memory has always held what was left in it.

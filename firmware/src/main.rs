@@ -15,13 +15,14 @@ mod fault_handlers;
 #[rtic::app(device = crate::board::pac, peripherals = true)]
 mod app {
     use crate::board::{
-        self, Board, Converter, FromHost, Memory, Numbers, Pin, PulseTimer, Received, SCALE,
-        TickTimer, ToHost, Watchdog, pac,
+        self, Board, Converter, EmulatedFlash, FromHost, Memory, Numbers, Pin, PulseTimer,
+        Received, SCALE, TickTimer, ToHost, Watchdog, pac,
     };
     use defmt_rtt as _;
     use firmware::safety::Fault;
     use firmware::{
-        Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, TICK_US,
+        Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, ServerRoom,
+        TICK_US,
     };
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
@@ -50,14 +51,17 @@ mod app {
         server: Server<'static, Memory, Numbers>,
     }
 
-    /// Outputs are neutral before anything else is done.
+    /// Outputs are neutral before anything else is done. What is large is built where it stays, and not on the stack.
     #[init(local = [
         gate: Gate = Gate::new(),
         plans: PlanQueue = Queue::new(),
         lines: Lines = Lines::new(),
         bytes: Queue<Received, WAITING> = Queue::new(),
+        room: ServerRoom = ServerRoom::new(),
+        flash: EmulatedFlash = EmulatedFlash::new(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
+        let init::LocalResources { gate, plans, lines, bytes, room, flash, .. } = context.local;
         let Board {
             stage,
             mut pulse_timer,
@@ -68,8 +72,7 @@ mod app {
             memory,
             numbers,
             boot,
-        } = Board::start(context.core, context.device, TICK_US);
-        let init::LocalResources { gate, plans, lines, bytes, .. } = context.local;
+        } = Board::start(context.core, context.device, TICK_US, flash);
         // Without an output stage that answers there is nothing to do; it may after a restart.
         let Some(stage) = stage else { board::reset() };
         let Ok(step) = TimeStep::from_seconds(f64::from(TICK_US) * 1e-6) else { board::reset() };
@@ -81,7 +84,7 @@ mod app {
             board::reset()
         };
         let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
-        let server = Server::new(link_ends, gate, memory, numbers, step);
+        let server = Server::new(room, link_ends, gate, memory, numbers, step);
         defmt::info!("a tick of {=u32} us", TICK_US);
         if boot == Fault::Watchdog {
             defmt::warn!("started again by the watchdog");

@@ -1,6 +1,6 @@
 //! The device's end of the link: below the tick, in no hurry.
 
-use crate::device::{LinkEnds, MUSCLES, Order, Outcome, Row, Stimuli, TYPES};
+use crate::device::{Bank, LinkEnds, MUSCLES, Order, Outcome, Row, Stimuli, TYPES};
 use crate::driven::Driven;
 use crate::gate::Gate;
 use crate::guarded::Guarded;
@@ -11,7 +11,7 @@ use crate::link::{
 use crate::randomness::Randomness;
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
-use crate::storage::{MOST_STORED, NotStored, Slots};
+use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
 use embedded_storage::nor_flash::NorFlash;
 use heapless::{Deque, Vec};
 use vm_nostd::TimeStep;
@@ -30,17 +30,48 @@ enum Waiting {
     Request(u16),
 }
 
+/// What a [`Server`] has of memory: it is large, and built where it stays.
+pub struct ServerRoom {
+    receiver: Receiver,
+    stored: SlotBuffer,
+    uploads: Stored,
+    built: Bank,
+    out: Out,
+}
+
+/// Bytes for the host, an answer and a message of traces at most.
+type Out = Deque<u8, { 2 * MOST_FRAME }>;
+
+impl Default for ServerRoom {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ServerRoom {
+    /// Empty.
+    pub const fn new() -> Self {
+        Self {
+            receiver: Receiver::new(),
+            stored: [0; _],
+            uploads: [None; MUSCLES],
+            built: [const { None }; MUSCLES],
+            out: Deque::new(),
+        }
+    }
+}
+
 /// Takes bytes, gives bytes, and tells the tick what it is to do.
 pub struct Server<'q, F, R> {
-    receiver: Receiver,
+    receiver: &'q mut Receiver,
     session: Session,
     ends: LinkEnds<'q>,
     gate: &'q Gate,
-    slots: Slots<F>,
+    slots: Slots<'q, F>,
     step: TimeStep,
-    uploads: Stored,
+    uploads: &'q mut Stored,
     /// As they were built.
-    built: [Option<Driven>; MUSCLES],
+    built: &'q mut Bank,
     restored: u8,
     waiting: Waiting,
     /// Number of the row that is due.
@@ -49,47 +80,49 @@ pub struct Server<'q, F, R> {
     /// How often this was looked after, for a source of randomness that has nothing else.
     polls: u32,
     randomness: R,
-    /// Bytes for the host, an answer and a message of traces at most.
-    out: Deque<u8, { 2 * MOST_FRAME }>,
+    out: &'q mut Out,
 }
 
 impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
     /// Takes over what is stored, and gives the tick the muscles that are whole and can be built.
     pub fn new(
+        room: &'q mut ServerRoom,
         ends: LinkEnds<'q>,
         gate: &'q Gate,
         memory: F,
         randomness: R,
         step: TimeStep,
     ) -> Self {
+        let ServerRoom { receiver, stored, uploads, built, out } = room;
+        let mut slots = Slots::new(memory, stored);
+        if slots.load().and_then(|stored| take_uploads(stored, uploads)).is_none() {
+            *uploads = [None; MUSCLES];
+        }
         let mut server = Self {
-            receiver: Receiver::new(),
+            receiver,
             session: Session::new(),
             ends,
             gate,
-            slots: Slots::new(memory),
+            slots,
             step,
-            uploads: [None; MUSCLES],
-            built: [const { None }; MUSCLES],
+            uploads,
+            built,
             restored: 0,
             waiting: Waiting::Boot,
             row: 0,
             sequence: 0,
             polls: 0,
             randomness,
-            out: Deque::new(),
+            out,
         };
-        let stored =
-            server.slots.load().and_then(|stored| match postcard::take_from_bytes(stored) {
-                Ok((uploads, [])) => Some(uploads),
-                _ => None,
-            });
-        server.uploads = stored.unwrap_or_default();
-        for (upload, built) in server.uploads.iter().zip(&mut server.built) {
+        for (upload, built) in server.uploads.iter().zip(server.built.iter_mut()) {
             *built = upload.as_ref().and_then(|upload| Driven::build(upload, step).ok());
             server.restored += u8::from(built.is_some());
         }
-        let _there_is_room = server.ends.orders.enqueue(Order::Rest(server.built.clone()));
+        if let Some(bank) = server.ends.spare.take() {
+            *bank = *server.built;
+            server.give(Order::Rest(bank));
+        }
         server
     }
 
@@ -140,8 +173,8 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
     pub fn poll(&mut self) {
         self.polls = self.polls.wrapping_add(1);
         if let Some(outcome) = self.ends.outcomes.dequeue() {
+            let answer = self.of_outcome(outcome);
             if let Waiting::Request(to) = self.waiting {
-                let answer = self.of_outcome(outcome);
                 self.answer(to, &answer);
             }
             self.waiting = Waiting::No;
@@ -198,33 +231,58 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
                 Order::Words(place.into())
             }
         };
-        // There is room: the outcome of the order before was taken.
-        let _there_is_room = self.ends.orders.enqueue(order);
+        self.give(order);
         self.waiting = Waiting::Request(sequence);
         Ok(None)
     }
 
+    /// There is room: the outcome of the order before was taken.
+    fn give(&mut self, order: Order) {
+        if let Err(Order::Load(_, bank) | Order::Rest(bank)) = self.ends.orders.enqueue(order) {
+            self.ends.spare = Some(bank);
+        }
+    }
+
+    // Not inlined, as others below: what one of them has on the stack would be there while another is deep.
+    #[inline(never)]
     fn upload(&mut self, place: u8, upload: Upload) -> Result<Order, Refusal<'static>> {
         self.only_disarmed()?;
         check_place(place)?;
+        self.only_with_spare()?;
         let driven = Driven::build(&upload, self.step)?;
         let index = usize::from(place);
         if let Some(channel) = driven.channel() {
             self.only_free(channel, Some(index))?;
         }
-        let mut uploads = self.uploads;
-        if let Some(slot) = uploads.get_mut(index) {
-            *slot = Some(upload);
+        self.store(index, &Some(upload))?;
+        if let (Some(slot), Some(built)) = (self.uploads.get_mut(index), self.built.get_mut(index))
+        {
+            (*slot, *built) = (Some(upload), Some(driven));
         }
+        Ok(Order::Load(index, self.spare()?))
+    }
+
+    /// Stores what is stored, with another upload at a place.
+    #[inline(never)]
+    fn store(&mut self, index: usize, upload: &Option<Upload>) -> Result<(), Refusal<'static>> {
+        let mut all = self.uploads.each_ref();
+        *all.get_mut(index).ok_or(Refusal::Empty)? = upload;
         let mut bytes = [0; MOST_STORED];
-        let bytes = postcard::to_slice(&uploads, &mut bytes)
+        let bytes = postcard::to_slice(&all, &mut bytes)
             .map_err(|_| Refusal::NotStored(NotStored::TooLong))?;
-        self.slots.store(bytes).map_err(Refusal::NotStored)?;
-        self.uploads = uploads;
-        if let Some(slot) = self.built.get_mut(index) {
-            *slot = Some(driven.clone());
-        }
-        Ok(Order::Load(index, driven))
+        self.slots.store(bytes).map_err(Refusal::NotStored)
+    }
+
+    /// A bank for the tick, with all muscles as they were built.
+    fn spare(&mut self) -> Result<&'static mut Bank, Refusal<'static>> {
+        let bank = self.ends.spare.take().ok_or(Refusal::NoRoom { room: 0 })?;
+        *bank = *self.built;
+        Ok(bank)
+    }
+
+    /// The tick has given it back with the outcome of the order before.
+    fn only_with_spare(&self) -> Result<(), Refusal<'static>> {
+        if self.ends.spare.is_some() { Ok(()) } else { Err(Refusal::NoRoom { room: 0 }) }
     }
 
     /// Stimuli by themselves are for channels that no electrode of a muscle has.
@@ -250,15 +308,20 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
         }
     }
 
+    #[inline(never)]
     fn rest(&mut self, paths: &[Option<f32>; MUSCLES]) -> Result<Order, Refusal<'static>> {
         self.only_disarmed()?;
-        let mut rested = [const { None }; MUSCLES];
-        for ((rested, built), &path) in rested.iter_mut().zip(&self.built).zip(paths) {
-            let Some(built) = built else { continue };
-            *rested = Some(path.map_or_else(|| Ok(built.clone()), |path| built.at_rest(path))?);
+        let bank = self.spare()?;
+        for (driven, path) in bank.iter_mut().zip(paths) {
+            if let (Some(driven), Some(path)) = (driven, path)
+                && let Err(refusal) = driven.rest(*path)
+            {
+                self.ends.spare = Some(bank);
+                return Err(refusal);
+            }
         }
         self.row = 0;
-        Ok(Order::Rest(rested))
+        Ok(Order::Rest(bank))
     }
 
     fn rows(&mut self, first: u32, rows: &[Row]) -> Result<(), Refusal<'static>> {
@@ -292,9 +355,13 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
         }
     }
 
-    fn of_outcome(&self, outcome: Outcome) -> Answer<'static> {
+    fn of_outcome(&mut self, outcome: Outcome) -> Answer<'static> {
         match outcome {
             Outcome::Done => Answer::Done,
+            Outcome::Took(bank) => {
+                self.ends.spare = Some(bank);
+                Answer::Done
+            }
             Outcome::NotArmed(reason) => Answer::Refused(Refusal::NotArmed(reason)),
             Outcome::Report(mut report) => {
                 report.frames = self.session.counters();
@@ -326,6 +393,15 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
 fn session_number(random: u32, nonce: u32, before: SessionNumber) -> SessionNumber {
     let number = (random ^ nonce) | 1;
     if number == before { number.wrapping_add(2) } else { number }
+}
+
+/// Reads what is stored, all of it or nothing.
+fn take_uploads(stored: &[u8], uploads: &mut Stored) -> Option<()> {
+    let mut rest = stored;
+    for upload in uploads {
+        (*upload, rest) = postcard::take_from_bytes(rest).ok()?;
+    }
+    rest.is_empty().then_some(())
 }
 
 fn check_place(place: u8) -> Result<(), Refusal<'static>> {

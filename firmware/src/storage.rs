@@ -41,17 +41,20 @@ struct Whole {
     length: usize,
 }
 
+/// What a slot is read to and written from.
+pub type SlotBuffer = [u8; MOST_SLOT];
+
 /// Two slots in a memory of two equal halves, each of whole pages of it.
 #[derive(Debug)]
-pub struct Slots<F> {
+pub struct Slots<'b, F> {
     memory: F,
-    buffer: [u8; MOST_SLOT],
+    buffer: &'b mut SlotBuffer,
 }
 
-impl<F: NorFlash> Slots<F> {
+impl<'b, F: NorFlash> Slots<'b, F> {
     /// Takes over a memory, as it is.
-    pub fn new(memory: F) -> Self {
-        Self { memory, buffer: [0; _] }
+    pub fn new(memory: F, buffer: &'b mut SlotBuffer) -> Self {
+        Self { memory, buffer }
     }
 
     /// Gives the memory back.
@@ -87,7 +90,7 @@ impl<F: NorFlash> Slots<F> {
         for (place, field) in self.buffer.chunks_exact_mut(4).zip(fields) {
             place.copy_from_slice(&field.to_le_bytes());
         }
-        let crc = checksum(&self.buffer, content.len()).ok_or(NotStored::TooLong)?;
+        let crc = checksum(self.buffer, content.len()).ok_or(NotStored::TooLong)?;
         self.buffer
             .get_mut(12..HEADER)
             .ok_or(NotStored::TooLong)?
@@ -124,14 +127,14 @@ impl<F: NorFlash> Slots<F> {
 
     /// Reads a slot into the buffer, and says what it holds if it is whole.
     fn whole(&mut self, slot: u32) -> Result<Option<Whole>, NotStored> {
-        self.memory.read(slot * self.half(), &mut self.buffer).map_err(|_| NotStored::Read)?;
+        self.memory.read(slot * self.half(), self.buffer).map_err(|_| NotStored::Read)?;
         let mut fields = [0; 4];
         for (field, bytes) in fields.iter_mut().zip(self.buffer.chunks_exact(4)) {
             *field = bytes.try_into().map_or(0, u32::from_le_bytes);
         }
         let [magic, generation, length, crc] = fields;
         let length = length as usize;
-        let whole = magic == MAGIC && checksum(&self.buffer, length) == Some(crc);
+        let whole = magic == MAGIC && checksum(self.buffer, length) == Some(crc);
         Ok(whole.then_some(Whole { slot, generation, length }))
     }
 }

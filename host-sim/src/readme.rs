@@ -163,10 +163,12 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
 /// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
 pub fn stack(report: &stack::Report) -> String {
     let mut text =
-        String::from("| what runs | priority | stack, B | deepest in |\n|---|---:|---:|---|\n");
+        String::from("| what runs | priority | stack, B | most of it in |\n|---|---:|---:|---|\n");
     for stack::Entry { task, priority, deepest } in &report.entries {
-        let name = deepest.path.last().map_or("", |step| step.function.as_str());
-        text.push_str(&format!("| {task} | {priority} | {} | `{name}` |\n", deepest.bytes));
+        let most = deepest.path.iter().max_by_key(|step| step.bytes).filter(|step| step.bytes > 0);
+        let most =
+            most.map_or("-".to_owned(), |step| format!("`{}`, {} B", step.function, step.bytes));
+        text.push_str(&format!("| {task} | {priority} | {} | {most} |\n", deepest.bytes));
     }
     format!("{text}\n{}", memory(report))
 }

@@ -12,5 +12,5 @@ mod function;
 mod report;
 
 pub use calls::{Deepest, Step};
-pub use description::{Description, Handler, Priority};
+pub use description::{Description, Ends, Handler, Indirect, Priority, Ram, Thread};
 pub use report::{Entry, Report, StackError, report};

@@ -21,7 +21,21 @@ impl Port {
 
     /// Stops the machine.
     pub fn attach(&self) -> Debugger {
-        let stream = TcpStream::connect(("127.0.0.1", self.0)).expect("an emulator");
+        self.attached(TcpStream::connect(("127.0.0.1", self.0)).expect("an emulator"))
+    }
+
+    /// The same once there is a machine.
+    pub fn attach_at_last(&self) -> Debugger {
+        for _ in 0..300 {
+            if let Ok(stream) = TcpStream::connect(("127.0.0.1", self.0)) {
+                return self.attached(stream);
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        panic!("no emulator")
+    }
+
+    fn attached(&self, stream: TcpStream) -> Debugger {
         stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
         Debugger(stream)
     }
@@ -37,6 +51,12 @@ impl Debugger {
     /// Lets it run.
     pub fn go_on(&mut self) {
         self.send("c");
+    }
+
+    /// Stops it again.
+    pub fn stop(&mut self) {
+        self.0.write_all(&[0x03]).expect("a line");
+        while !self.packet().starts_with('T') {}
     }
 
     /// Memory of the stopped machine.

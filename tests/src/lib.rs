@@ -10,6 +10,7 @@ pub struct Readme;
 pub struct ModelReadme;
 
 pub mod debugger;
+pub mod machine;
 
 use host_sim::target::{self, Board, TargetError};
 use std::io::Write;

@@ -87,14 +87,15 @@ impl FlashController for Controller {
     }
 }
 
+/// What is there in an emulator instead of flash.
+pub type EmulatedFlash = RamFlash<8192>;
+
 /// What outlasts a loss of power; in an emulator, only for as long as that runs.
-// One of them is only there in an emulator, which has memory enough.
-#[allow(clippy::large_enum_variant)]
 pub enum Memory {
     /// Two sectors.
     Flash(Flash<Controller>),
     /// The same in small.
-    Ram(RamFlash<8192>),
+    Ram(&'static mut EmulatedFlash),
 }
 
 /// Memory did not do what it was to.

@@ -66,7 +66,9 @@ impl Bench {
         let device = Device::new(controller, tick, Deadline::new(TICK_US, 1));
         let mut bench = Self { device, ends, gate, plans };
         let muscle = Driven::build(&UPLOAD, TimeStep::MILLISECOND).expect("a muscle");
-        bench.order(Order::Load(0, muscle));
+        let bank = bench.ends.spare.take().expect("a bank");
+        bank[0] = Some(muscle);
+        bench.order(Order::Load(0, bank));
         bench.read();
         bench.order(Order::Acknowledge(Fault::Boot));
         bench.order(Order::Arm);
@@ -87,7 +89,7 @@ impl Bench {
     fn order(&mut self, order: Order) {
         assert!(self.ends.orders.enqueue(order).is_ok());
         self.tick();
-        assert!(matches!(self.ends.outcomes.dequeue(), Some(Outcome::Done)));
+        assert!(matches!(self.ends.outcomes.dequeue(), Some(Outcome::Done | Outcome::Took(_))));
     }
 
     /// Of a host that is heard, and takes its traces.
@@ -117,13 +119,13 @@ fn a_row_that_lost_a_bit_while_it_waited_is_a_fault_and_moves_nothing() {
     let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
     bench.row(row());
     assert!(bench.tick());
-    let before = bench.device.muscles[0].as_ref().expect("a muscle").words();
+    let before = bench.device.ends.muscles[0].as_ref().expect("a muscle").words();
     let mut lost = row();
     lost.corrupt(|inputs| inputs[0].stimulation_frequency = 80.0);
     bench.row(lost);
     assert!(!bench.tick());
     assert_eq!(bench.state(), State::Latched(Fault::Checksum));
-    assert_eq!(bench.device.muscles[0].as_ref().expect("a muscle").words(), before);
+    assert_eq!(bench.device.ends.muscles[0].as_ref().expect("a muscle").words(), before);
     // It is over with the row.
     bench.order(Order::Acknowledge(Fault::Checksum));
     bench.order(Order::Arm);

@@ -77,6 +77,8 @@ pub struct Image {
     sections: Vec<(u32, Vec<u8>)>,
     /// All sections that have addresses, those without a content as well.
     places: Vec<Section>,
+    /// Where code begins behind data, in order.
+    code_begins: Vec<u32>,
     /// By address.
     functions: Vec<Function>,
     /// Name and bytes of each constant.
@@ -117,6 +119,14 @@ impl Image {
                 Some(Function { name, address, size: symbol.size() as u32 })
             })
             .collect();
+        let mut code_begins: Vec<u32> = file
+            .symbols()
+            .filter(|symbol| {
+                symbol.name().is_ok_and(|name| name == "$t" || name.starts_with("$t."))
+            })
+            .map(|symbol| symbol.address() as u32 & !1)
+            .collect();
+        code_begins.sort_unstable();
         let constants = file
             .symbols()
             .filter(|symbol| symbol.kind() == SymbolKind::Data)
@@ -137,7 +147,8 @@ impl Image {
                 functions[index].size = end.saturating_sub(address);
             }
         }
-        Ok(Self { path: path.to_owned(), sections, places, functions, constants })
+        let path = path.to_owned();
+        Ok(Self { path, sections, places, code_begins, functions, constants })
     }
 
     /// Bytes of all constants of a module and those in it.
@@ -173,6 +184,12 @@ impl Image {
     /// All sections that have addresses.
     pub fn sections(&self) -> &[Section] {
         &self.places
+    }
+
+    /// Where code begins, at an address or behind it; none if the image does not say.
+    pub fn code_behind(&self, address: u32) -> Option<u32> {
+        let index = self.code_begins.partition_point(|&begin| begin < address);
+        self.code_begins.get(index).copied()
     }
 
     /// The word at an address, if there is one.
@@ -214,8 +231,14 @@ impl Image {
             })
             .collect();
         let sections = vec![(address, code)];
-        let (path, places, constants) = (PathBuf::from("test"), Vec::new(), Vec::new());
-        Self { path, sections, places, functions, constants }
+        Self {
+            path: PathBuf::from("test"),
+            sections,
+            places: Vec::new(),
+            code_begins: Vec::new(),
+            functions,
+            constants: Vec::new(),
+        }
     }
 }
 

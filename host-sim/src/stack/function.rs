@@ -41,6 +41,8 @@ pub(super) struct Functions<'a> {
 /// Depths that one instruction can be met at: more is a stack that grows in a loop.
 const MOST_DEPTHS: usize = 8;
 
+const NOP: [u8; 2] = [0x00, 0xBF];
+
 impl<'a> Functions<'a> {
     pub fn new(image: &'a Image) -> Result<Self, capstone::Error> {
         Ok(Self { image, decoded: Decoded::new(image)?, walked: BTreeMap::new() })
@@ -184,11 +186,18 @@ impl<'a> Functions<'a> {
         walked
     }
 
-    /// Where the table of a TBB or TBH leads, of entries of 1 or 2 bytes: it ends where the first of its targets is.
+    /// Where the table of a TBB or TBH leads, of entries of 1 or 2 bytes. It ends where code begins again: where the
+    /// image says so, or else at the first of its targets.
     fn table(&self, start: u32, bytes: u32) -> Option<BTreeSet<u32>> {
-        let mut targets = BTreeSet::new();
+        let mut targets: BTreeSet<u32> = BTreeSet::new();
         let mut at = start;
-        while targets.first().is_none_or(|&first| at < first) {
+        let end = self.image.code_behind(start).unwrap_or(u32::MAX);
+        loop {
+            let end = targets.first().map_or(end, |&first| end.min(first));
+            // A NOP aligns what follows.
+            if at >= end || (at + 2 == end && self.image.code_at(at).starts_with(&NOP)) {
+                return Some(targets);
+            }
             let entry = match (self.image.code_at(at), bytes) {
                 ([byte, ..], 1) => u32::from(*byte),
                 ([low, high, ..], 2) => u32::from(u16::from_le_bytes([*low, *high])),
@@ -200,7 +209,6 @@ impl<'a> Functions<'a> {
             }
             at += bytes;
         }
-        Some(targets)
     }
 }
 
@@ -277,6 +285,9 @@ mod tests {
     fn all_that_a_table_leads_to_is_walked() {
         // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7, lr}; pop {r4-r7, pc}
         let code = [0xE8DF, 0xF000, 0x0302, 0x0005, 0x4770, 0xB510, 0xBD10, 0xB5F0, 0xBDF0];
+        assert_eq!(own(&code), 20);
+        // The same with a NOP before A.
+        let code = [0xE8DF, 0xF000, 0x0403, 0x0006, 0xBF00, 0x4770, 0xB510, 0xBD10, 0xB5F0, 0xBDF0];
         assert_eq!(own(&code), 20);
     }
 

@@ -71,7 +71,14 @@ impl<F: NorFlash> InProcess<F> {
         let controller =
             Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate).expect("valid limits");
         Self {
-            server: Server::new(link_ends, gate, memory, randomness, TimeStep::MILLISECOND),
+            server: Server::new(
+                Box::leak(Box::default()),
+                link_ends,
+                gate,
+                memory,
+                randomness,
+                TimeStep::MILLISECOND,
+            ),
             device: Device::new(controller, tick_ends, Deadline::new(TICK, 1)),
             pulses: Pulses::new(stage, take, gate, TICK),
             electrodes,

@@ -82,7 +82,8 @@ fn content(seed: u8, length: usize) -> Vec<u8> {
 fn power_that_is_lost_at_any_byte_leaves_the_old_content_or_the_new_one() {
     let (old, new) = (content(1, 777), content(2, 701));
     for writes_before in 1..=2 {
-        let mut slots = Slots::new(RamFlash::<BYTES>::new());
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(RamFlash::<BYTES>::new(), &mut buffer);
         for _ in 0..writes_before {
             slots.store(&old).expect("a memory");
         }
@@ -91,10 +92,12 @@ fn power_that_is_lost_at_any_byte_leaves_the_old_content_or_the_new_one() {
         let all = BYTES / 2 + 16 + new.len().next_multiple_of(4);
         for left in 1..=all + 1 {
             for torn in [0x00, 0x55, 0xf0, 0xff] {
-                let mut slots = Slots::new(Cut { memory: memory.clone(), left, torn });
+                let mut buffer = [0; _];
+                let mut slots = Slots::new(Cut { memory: memory.clone(), left, torn }, &mut buffer);
                 let stored = slots.store(&new);
                 assert_eq!(stored.is_ok(), left > all, "{left} of {all}");
-                let mut slots = Slots::new(slots.into_memory().memory);
+                let mut buffer = [0; _];
+                let mut slots = Slots::new(slots.into_memory().memory, &mut buffer);
                 let kept = slots.load().expect("a content").to_vec();
                 // An error may come too late, but never success too early.
                 if kept == new {
@@ -115,7 +118,8 @@ fn power_that_is_lost_at_any_byte_leaves_the_old_content_or_the_new_one() {
 
 #[test]
 fn what_was_never_stored_or_is_worn_is_not_made_up() {
-    let mut slots = Slots::new(RamFlash::<BYTES>::new());
+    let mut buffer = [0; _];
+    let mut slots = Slots::new(RamFlash::<BYTES>::new(), &mut buffer);
     assert_eq!(slots.load(), None);
     let long = content(1, MOST_STORED);
     slots.store(&long).expect("as much as there is room for");
@@ -133,7 +137,8 @@ fn what_was_never_stored_or_is_worn_is_not_made_up() {
             bytes[newest + offset] ^= 1 << bit;
             worn.erase(0, BYTES as u32).expect("a memory");
             worn.write(0, &bytes).expect("a memory");
-            let mut slots = Slots::new(worn);
+            let mut buffer = [0; _];
+            let mut slots = Slots::new(worn, &mut buffer);
             assert_eq!(slots.load(), Some(long.as_slice()), "byte {offset} bit {bit}");
         }
     }

@@ -1,0 +1,242 @@
+//! The stimulator's stack: what the image says of it against what it takes in QEMU, and what becomes of an overflow.
+//!
+//! Where the thumb target or QEMU cannot be had, these tests say SKIPPED.
+
+use firmware::link::{Electrode, MOST_ROWS, Request, RowInputs, Upload};
+use firmware::safety::{Fault, State};
+use host_sim::stack::{self, Description, Priority};
+use host_sim::{readme, target};
+use object::{Object, ObjectSection};
+use std::ops::Range;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use stimulator_tests::host::{READINGS, fes};
+use system_tests::debugger::{Debugger, Port};
+use system_tests::machine::{Machine, Said, drive, image, kept_alive, symbol};
+use vm_nostd::RecruitmentCurveParams;
+
+fn description() -> Description {
+    let path = target::root().join("firmware/stack.toml");
+    toml::from_str(&std::fs::read_to_string(path).expect("a file")).expect("a description")
+}
+
+#[test]
+fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
+    let Some(image) = image() else { return };
+    let report = stack::report(&image, &description()).expect("a report");
+    assert_eq!(report.problems, Vec::<String>::new());
+    let current = readme::STACK.is_current(&readme::stack(&report)).expect("a README");
+    assert!(current, "the firmware's README is not what is computed: cargo vm stack --write");
+}
+
+#[test]
+fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
+    let Some(image) = image() else { return };
+    let problem = |change: fn(&mut Description)| {
+        let mut description = description();
+        change(&mut description);
+        stack::report(&image, &description).expect("a report").problems.join("\n")
+    };
+    let cases: [(fn(&mut Description), &str); 8] = [
+        (
+            |it| it.handlers.retain(|handler| handler.function != "TIM2"),
+            "vector 44 is TIM2, and described as DefaultHandler",
+        ),
+        (|it| it.handlers[0].vector = 54, "vector 54 is DefaultHandler, and described as USART1"),
+        (|it| it.handlers[0].vector = 900, "vector 900, described as USART1, is not there"),
+        (|it| it.indirect.clear(), "an indirect call"),
+        (
+            |it| it.indirect.extend(it.indirect.first().cloned().map(stale)),
+            "stale: no indirect call in HardFault",
+        ),
+        (|it| it.ram.least_free_percent = 90, "less than 90 %"),
+        (|it| it.ram.guard_bytes = 1000, "it may step over"),
+        // A task's handler needs a stack.
+        (
+            |it| {
+                let ends = it.handlers.last().expect("a handler").priority;
+                it.handlers[0].priority = ends;
+            },
+            "USART1: it needs",
+        ),
+    ];
+    for (change, expected) in cases {
+        let problems = problem(change);
+        assert!(problems.contains(expected), "{expected}: {problems}");
+    }
+}
+
+fn stale(indirect: stack::Indirect) -> stack::Indirect {
+    stack::Indirect { function: "HardFault".to_owned(), ..indirect }
+}
+
+/// Memory for the stack, and the rest of memory.
+fn layout(image: &Path) -> (Range<u32>, Range<u32>) {
+    let bytes = std::fs::read(image).expect("an image");
+    let file = object::File::parse(&*bytes).expect("an ELF file");
+    let vectors = file.section_by_name(".vector_table").expect("vectors").data().expect("vectors");
+    let top = u32::from_le_bytes(vectors[..4].try_into().expect("a word"));
+    let ram = description().ram;
+    let end = ram.start + ram.bytes;
+    // With the stack on top, as it would be by itself, what is at the bottom is not the stack's.
+    if top == end {
+        (end - 0x8000..end, ram.start..end - 0x8000)
+    } else {
+        (ram.start..top, top..end)
+    }
+}
+
+/// With an electrode of a channel.
+fn upload(channel: u8) -> Upload {
+    let curve = RecruitmentCurveParams {
+        threshold: 4e-3,
+        saturation: 12e-3,
+        chronaxie: 200e-6,
+        slope: 2.0,
+    };
+    let electrode = Electrode { channel, curve, width_us: 200, gap_us: 50, recovery: 1 };
+    Upload { electrode: Some(electrode), ..fes() }
+}
+
+/// All kinds of requests of a host.
+fn traffic() -> Vec<Request> {
+    let row = RowInputs { activation: 0.5, path_length: 0.16, stimulation_frequency: 25.0 };
+    let rows = || (0..MOST_ROWS).map(|_| [row; 2]).collect();
+    let mut refused = upload(3);
+    refused.muscle.mass = -1.0;
+    let mut requests = vec![
+        Request::Upload { place: 0, upload: upload(0) },
+        Request::Upload { place: 1, upload: upload(1) },
+        Request::Rest([Some(0.16), None]),
+        Request::Readings(READINGS),
+        Request::Acknowledge(Fault::Boot),
+        Request::Arm,
+        Request::Rows { first: 0, rows: rows() },
+        Request::Rows { first: MOST_ROWS as u32, rows: rows() },
+    ];
+    requests.extend(kept_alive());
+    requests.extend([
+        Request::State { place: 0 },
+        Request::Report,
+        Request::Stop,
+        Request::Upload { place: 0, upload: refused },
+        // Of channels that electrodes have.
+        drive(),
+    ]);
+    requests
+}
+
+/// Nothing is written there by itself.
+const PAINT: u8 = 0xA5;
+
+/// How far above its measured depth the computed one may be: it has the deepest paths of all priorities at once. It was
+/// 1.09 when this was written.
+const MOST_RATIO: f64 = 1.5;
+
+#[test]
+fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
+    let Some(image) = image() else { return };
+    let description = description();
+    let computed = stack::report(&image, &description).expect("a report").stack;
+    let (room, _) = layout(&image);
+    let length = room.len();
+
+    let port = Port::free();
+    let mut arguments = port.arguments();
+    arguments.push("-S".to_owned());
+    // Greets before there is anybody: the machine stands still until the stack is painted.
+    let painted = std::thread::scope(|scope| {
+        let painter = scope.spawn(|| {
+            let mut debugger = port.attach_at_last();
+            for part in (0..length).step_by(256) {
+                debugger.write(u64::from(room.start) + part as u64, &[PAINT; 256]);
+            }
+            debugger.go_on();
+            debugger
+        });
+        let machine = Machine::start(&image, arguments);
+        (machine, painter.join().expect("a debugger"))
+    });
+    let (mut machine, mut debugger) = painted;
+    let said = machine.script(&traffic());
+    assert!(said[..8].iter().all(|one| *one == Said::Done), "{said:?}");
+    debugger.stop();
+    let memory = debugger.read(room.start.into(), length);
+    let untouched = memory.iter().take_while(|&&byte| byte == PAINT).count();
+    let measured = u32::try_from(length - untouched).expect("a depth");
+    println!("computed {computed} B, measured {measured} B");
+    assert!(measured <= computed, "{measured} B were taken, {computed} computed");
+    let ratio = f64::from(computed) / f64::from(measured);
+    assert!(ratio <= MOST_RATIO, "{computed} B computed, {measured} measured: {ratio:.2}");
+
+    // The priorities that the description says are those that the core has been told, of 4 bits each.
+    for handler in &description.handlers {
+        let Priority::Level(level) = handler.priority else { continue };
+        let register = match handler.vector {
+            system @ 4..16 => 0xE000_ED18 + system - 4,
+            interrupt => 0xE000_E400 + interrupt - 16,
+        };
+        let told = debugger.read(register.into(), 1);
+        assert_eq!(told, [(16 - level) << 4], "{}", handler.function);
+    }
+}
+
+/// Whether a word is what the core gives a handler as its return address.
+fn is_return_of_exception(word: &[u8]) -> bool {
+    matches!(word, [0xE1 | 0xE9 | 0xF1 | 0xF9, 0xFF, 0xFF, 0xFF])
+}
+
+fn returns_of_exceptions(debugger: &mut Debugger, range: &Range<u32>) -> usize {
+    let memory = debugger.read(range.start.into(), range.len());
+    memory.chunks_exact(4).filter(|word| is_return_of_exception(word)).count()
+}
+
+/// While pulses flow, the tick takes stack without end: the first word beyond memory is a fault of the core, statics
+/// are what they were, and the chip starts again in neutral.
+#[test]
+fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
+    let Some(image) = image() else { return };
+    let (stack, statics) = layout(&image);
+    let port = Port::free();
+    let mut machine = Machine::start(&image, port.arguments());
+    let mut requests =
+        vec![Request::Readings(READINGS), Request::Acknowledge(Fault::Boot), Request::Arm, drive()];
+    requests.extend(kept_alive());
+    // Armed, and the host still heard, when the debugger stops it.
+    let said = machine.converse(&requests, 50);
+    assert!(said.iter().all(|one| *one == Said::Done), "{said:?}");
+
+    let mut debugger = port.attach();
+    assert!(machine.pins().closed > 20);
+    let before = returns_of_exceptions(&mut debugger, &statics);
+    let function = |name| symbol(&image, name).0 & !1;
+    let (tick, fault) = (function("SysTick"), function("HardFault"));
+    let kept = (debugger.read(tick, 4), debugger.read(fault, 2));
+    // push {r0-r7, lr}, and again; the core's fault handler waits to be looked at.
+    debugger.write(tick, &[0xFF, 0xB5, 0xFD, 0xE7]);
+    debugger.write(fault, &[0xFE, 0xE7]);
+    debugger.go_on();
+    let started = Instant::now();
+    loop {
+        std::thread::sleep(Duration::from_millis(100));
+        debugger.stop();
+        let bottom = stack.start..stack.start + 0x100;
+        if returns_of_exceptions(&mut debugger, &bottom) > 0 {
+            break;
+        }
+        assert!(started.elapsed() < Duration::from_secs(60), "no overflow");
+        debugger.go_on();
+    }
+    let after = returns_of_exceptions(&mut debugger, &statics);
+    assert_eq!(after, before, "the stack was written over the statics");
+
+    // The handler as it is, with a stack pointer that is of no use.
+    debugger.write(tick, &kept.0);
+    debugger.write(fault, &kept.1);
+    let closed = machine.pins().closed;
+    debugger.go_on();
+    let mut machine = machine.greeted_again();
+    assert_eq!(machine.report().state, State::Latched(Fault::Boot));
+    let pins = machine.pins();
+    assert_eq!((pins.bridge, pins.channels, pins.closed), (0, 0, closed));
+}
