@@ -5,6 +5,7 @@ use crate::guarded::Guarded;
 use crate::limits::{LimitError, Limits};
 use crate::plan::Plan;
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
+use crate::shared::Giver;
 use crate::stimulus::Scale;
 use heapless::spsc::Producer;
 
@@ -12,7 +13,7 @@ use heapless::spsc::Producer;
 pub struct Controller<'q> {
     supervisor: Supervisor,
     scale: Guarded<Scale>,
-    plans: Producer<'q, Guarded<Plan<CHANNELS>>>,
+    plans: Giver<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
     /// What the pulse timer has last been told.
     told: Plan<CHANNELS>,
@@ -32,7 +33,7 @@ impl<'q> Controller<'q> {
         Ok(Self {
             supervisor: Supervisor::new(limits, tick_us, &scale, boot)?,
             scale: Guarded::new(scale),
-            plans,
+            plans: Giver(plans),
             gate,
             told: Plan::NOTHING,
         })

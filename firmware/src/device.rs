@@ -7,9 +7,10 @@ use crate::guarded::{Guarded, Sum};
 use crate::limits::{LONGEST_TICK_US, Limits, SHORTEST_TICK_US};
 use crate::link::{MOST_WORDS, Readings, Report, RowInputs, RowOutputs, Traced};
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested};
+use crate::shared::{Giver, Taker};
 use crate::stimulus::Stimulus;
 use heapless::Vec;
-use heapless::spsc::{Consumer, Producer, Queue};
+use heapless::spsc::Queue;
 use vm_nostd::Checksum;
 
 /// Time between ticks of the firmware, µs: 500 to 2,000. 1,000, or what `VM_TICK_US` says when it is built; what is
@@ -117,17 +118,17 @@ impl Lines {
         let (give_trace, take_trace) = self.traces.split();
         (
             TickEnds {
-                orders: take_order,
-                outcomes: give_outcome,
-                rows: take_row,
-                traces: give_trace,
+                orders: Taker(take_order),
+                outcomes: Giver(give_outcome),
+                rows: Taker(take_row),
+                traces: Giver(give_trace),
                 muscles: &mut self.muscles,
             },
             LinkEnds {
-                orders: give_order,
-                outcomes: take_outcome,
-                rows: give_row,
-                traces: take_trace,
+                orders: Giver(give_order),
+                outcomes: Taker(take_outcome),
+                rows: Giver(give_row),
+                traces: Taker(take_trace),
                 spare: Some(&mut self.spare),
             },
         )
@@ -136,19 +137,19 @@ impl Lines {
 
 /// The tick's ends of [`Lines`].
 pub struct TickEnds<'q> {
-    orders: Consumer<'q, Order>,
-    outcomes: Producer<'q, Outcome>,
-    rows: Consumer<'q, Guarded<Row>>,
-    traces: Producer<'q, Traced>,
+    orders: Taker<'q, Order>,
+    outcomes: Giver<'q, Outcome>,
+    rows: Taker<'q, Guarded<Row>>,
+    traces: Giver<'q, Traced>,
     muscles: &'static mut Bank,
 }
 
 /// The link's ends of [`Lines`].
 pub struct LinkEnds<'q> {
-    pub(crate) orders: Producer<'q, Order>,
-    pub(crate) outcomes: Consumer<'q, Outcome>,
-    pub(crate) rows: Producer<'q, Guarded<Row>>,
-    pub(crate) traces: Consumer<'q, Traced>,
+    pub(crate) orders: Giver<'q, Order>,
+    pub(crate) outcomes: Taker<'q, Outcome>,
+    pub(crate) rows: Giver<'q, Guarded<Row>>,
+    pub(crate) traces: Taker<'q, Traced>,
     /// None while the tick has it.
     pub(crate) spare: Option<&'static mut Bank>,
 }

@@ -1,91 +1,91 @@
 //! What pulse timer, tick and link tell each other without waiting for each other.
 
-use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use crate::shared::Flag;
 
 /// Flags between levels of one core, of which one interrupts the other: each is set by one side, and cleared by
 /// the other or by the same.
 #[derive(Debug, Default)]
 pub struct Gate {
     /// The tick allows current.
-    open: AtomicBool,
+    open: Flag,
     /// The tick has allowed it again.
-    renewed: AtomicBool,
+    renewed: Flag,
     /// The output stage did not answer when it was last spoken to.
-    output_failed: AtomicBool,
+    output_failed: Flag,
     /// The pulse timer did not hear of the tick for too long, or its own interrupt came too late.
-    late: AtomicBool,
+    late: Flag,
     /// Memory has changed a plan on its way to the pulse timer, or there.
-    plan_lost: AtomicBool,
+    plan_lost: Flag,
     /// The link has acted upon a frame of the host's.
-    heard: AtomicBool,
+    heard: Flag,
 }
 
 impl Gate {
     /// Shut.
     pub const fn new() -> Self {
-        let no = AtomicBool::new;
+        let no = Flag::lowered;
         Self {
-            open: no(false),
-            renewed: no(false),
-            output_failed: no(false),
-            late: no(false),
-            plan_lost: no(false),
-            heard: no(false),
+            open: no(),
+            renewed: no(),
+            output_failed: no(),
+            late: no(),
+            plan_lost: no(),
+            heard: no(),
         }
     }
 
     pub(crate) fn set_open(&self, open: bool) {
-        self.open.store(open, Relaxed);
+        self.open.set(open);
     }
 
     pub(crate) fn is_open(&self) -> bool {
-        self.open.load(Relaxed)
+        self.open.is_raised()
     }
 
     pub(crate) fn renew(&self) {
-        self.renewed.store(true, Relaxed);
+        self.renewed.set(true);
     }
 
     /// Whether the tick has allowed it since this was asked last. Only for the pulse timer, which the tick cannot
     /// interrupt.
     pub(crate) fn take_renewed(&self) -> bool {
-        let renewed = self.renewed.load(Relaxed);
-        self.renewed.store(false, Relaxed);
+        let renewed = self.renewed.is_raised();
+        self.renewed.set(false);
         renewed
     }
 
     pub(crate) fn set_output_failed(&self, failed: bool) {
-        self.output_failed.store(failed, Relaxed);
+        self.output_failed.set(failed);
     }
 
     pub(crate) fn output_failed(&self) -> bool {
-        self.output_failed.load(Relaxed)
+        self.output_failed.is_raised()
     }
 
     pub(crate) fn set_heard(&self) {
-        self.heard.store(true, Relaxed);
+        self.heard.set(true);
     }
 
     /// Whether the host was heard of since this was asked last. Only for the tick, which the link cannot interrupt.
     pub(crate) fn take_heard(&self) -> bool {
-        let heard = self.heard.load(Relaxed);
-        self.heard.store(false, Relaxed);
+        let heard = self.heard.is_raised();
+        self.heard.set(false);
         heard
     }
 
     pub(crate) fn set_late(&self, late: bool) {
-        self.late.store(late, Relaxed);
+        self.late.set(late);
     }
 
     pub(crate) fn is_late(&self) -> bool {
-        self.late.load(Relaxed)
+        self.late.is_raised()
     }
 
     pub(crate) fn set_plan_lost(&self, lost: bool) {
-        self.plan_lost.store(lost, Relaxed);
+        self.plan_lost.set(lost);
     }
 
     pub(crate) fn is_plan_lost(&self) -> bool {
-        self.plan_lost.load(Relaxed)
+        self.plan_lost.is_raised()
     }
 }

@@ -9,7 +9,7 @@
 //! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues of [`Lines`].
 #![no_std]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "explore"))]
 extern crate std;
 
 mod controller;
@@ -34,6 +34,7 @@ pub mod safety;
 mod scenario;
 mod schedule;
 mod server;
+mod shared;
 mod stimulus;
 mod storage;
 pub mod watchdog;
@@ -54,6 +55,8 @@ pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};
 pub use scenario::{Scenario, TICKS};
 pub use schedule::{Schedule, Step};
 pub use server::{Server, ServerRoom};
+#[cfg(feature = "explore")]
+pub use shared::explore;
 pub use stimulus::{LEAST_PHASE_US, Scale, Stimulus, StimulusError};
 pub use storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
 pub use waveform::{Direction, Phase, Pulse};

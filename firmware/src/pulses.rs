@@ -6,6 +6,7 @@ use crate::output::OutputStage;
 use crate::plan::Plan;
 use crate::safety::CHANNELS;
 use crate::schedule::{Schedule, Step};
+use crate::shared::Taker;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use heapless::spsc::Consumer;
@@ -14,7 +15,7 @@ use heapless::spsc::Consumer;
 pub struct Pulses<'q, D, P> {
     stage: OutputStage<D, P, CHANNELS>,
     schedule: Schedule<CHANNELS>,
-    plans: Consumer<'q, Guarded<Plan<CHANNELS>>>,
+    plans: Taker<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
     /// For how long a tick's permission holds, µs.
     patience_us: u32,
@@ -51,7 +52,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         Self {
             stage,
             schedule,
-            plans,
+            plans: Taker(plans),
             gate,
             patience_us,
             age_us: 0,

@@ -326,7 +326,7 @@ impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
 
     fn rows(&mut self, first: u32, rows: &[Row]) -> Result<(), Refusal<'static>> {
         within("first", first, self.row, self.row)?;
-        let room = self.ends.rows.capacity() - self.ends.rows.len();
+        let room = self.ends.rows.room();
         if room < rows.len() {
             // No more than a queue's length.
             return Err(Refusal::NoRoom { room: room as u32 });

@@ -67,6 +67,12 @@ fn only_the_board_names_the_chip() {
     assert_eq!(mentions("firmware/src", &["SYST", "set_reload", "stm32"]), ["board.rs"]);
 }
 
+/// What the explorer of interleavings asks before: the firmware's levels share nothing by themselves.
+#[test]
+fn only_one_module_names_what_levels_share() {
+    assert_eq!(mentions("firmware/src", &["atomic::"]), ["shared.rs"]);
+}
+
 /// What is built for each mutant of the libraries.
 #[test]
 fn the_tests_of_the_libraries_build_without_the_host() {

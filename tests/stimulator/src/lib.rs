@@ -4,4 +4,7 @@ pub mod bench;
 pub mod client;
 pub mod device;
 pub mod electrodes;
+pub mod explorer;
 pub mod host;
+pub mod levels;
+pub mod patient;

@@ -1,0 +1,491 @@
+//! Random sequences of messages, sensors that fail, silences and late ticks, through the public types; and an oracle
+//! of the limits at the electrodes.
+//!
+//! `VM_MESSAGES=10000000 cargo test --release -p stimulator-tests --test oracle -- --nocapture` sends ten million;
+//! where it is not set there are 200,000.
+
+use firmware::link::{
+    Answer, Electrode, Message, Mode, NO_SESSION, Readings, Receiver, Request, RowInputs,
+    SessionNumber, Upload, encode,
+};
+use firmware::safety::{CHANNELS, Fault, State};
+use firmware::{
+    Controller, Deadline, Device, Gate, Limits, Lines, MUSCLE, PlanQueue, Pulses, Server, Stimulus,
+};
+use std::collections::{HashMap, VecDeque};
+use stimulator_tests::device::{LIMITS as BOARD, Memory};
+use stimulator_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
+use stimulator_tests::patient::{Bounds, Patient};
+use vm_nostd::{RecruitmentCurveParams, TimeStep};
+
+const TICK: u64 = 1000;
+
+/// Each limit is reached before another one, and soon.
+const LIMITS: Limits = Limits {
+    amplitude_ua: 40_000,
+    width_us: 450,
+    frequency_tenths_pps: 800,
+    charge_nc: 10_000,
+    rms_ua: 5_000,
+    rise_ua: 2_000,
+    session_ms: 20_000,
+    rest_ms: 300,
+    silence_ms: 100,
+    readings_ms: 200,
+    rows_ms: 50,
+    drives_ms: 400,
+    stuck_ms: 500,
+    ..BOARD
+};
+
+/// The same as the electrodes have it: 50 mA are 4095 counts.
+const BOUNDS: Bounds = Bounds {
+    counts: 3276,
+    width_us: 450,
+    charge: 10_000_000 * 4095 / 50_000,
+    mean_square: 410 * 410,
+    pulses: 80,
+    rise: 164,
+    session_us: 20_000_000,
+    rest_us: 300_000,
+    silence_us: 100_000,
+    readings_us: 200_000,
+    rows_us: 50_000,
+    drives_us: 400_000,
+    tick_us: TICK,
+};
+
+/// The channel of the muscle's electrode.
+const OF_ROWS: usize = 3;
+const ELECTRODE: Electrode = Electrode {
+    channel: OF_ROWS as u8,
+    curve: RecruitmentCurveParams {
+        threshold: 4e-3,
+        saturation: 12e-3,
+        chronaxie: 200e-6,
+        slope: 2.0,
+    },
+    width_us: 200,
+    gap_us: 40,
+    recovery: 2,
+};
+
+/// µA that recruit an activation, from the definition of the curve.
+fn amplitude_ua(activation: f64) -> u32 {
+    let half = |activation: f64| {
+        let double = 2.0 * activation;
+        let t = ELECTRODE.curve.slope * double / (1.0 - double + ELECTRODE.curve.slope * double);
+        0.5 * t
+    };
+    let x = if activation <= 0.5 { half(activation) } else { 1.0 - half(1.0 - activation) };
+    let rheobase =
+        ELECTRODE.curve.threshold + x * (ELECTRODE.curve.saturation - ELECTRODE.curve.threshold);
+    let width = f64::from(ELECTRODE.width_us) * 1e-6;
+    // Of the curve in `f32`.
+    (rheobase * (1.0 + ELECTRODE.curve.chronaxie / width) * 1e6 * 1.0001) as u32 + 1
+}
+
+/// Numbers that look random.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 >> 11
+    }
+
+    fn below(&mut self, most: u64) -> u64 {
+        self.next() % most
+    }
+
+    fn from(&mut self, least: u64, most: u64) -> u64 {
+        least + self.below(most - least + 1)
+    }
+
+    fn one_in(&mut self, many: u64) -> bool {
+        self.below(many) == 0
+    }
+}
+
+/// Device, patient, and a host that knows what it has said.
+struct World {
+    server: Server<'static, Memory>,
+    device: Device<'static>,
+    pulses: Pulses<'static, Converter, Pin>,
+    electrodes: Shared,
+    patient: Patient,
+    now_us: u64,
+    /// When the pulse timer runs out, and how long the step lasts that begins then.
+    timer_us: u64,
+    step_us: u32,
+    receiver: Receiver,
+    session: SessionNumber,
+    sequence: u16,
+    /// What waits for its answer.
+    pending: Option<Request>,
+    answered: bool,
+    /// Rows that were sent, from this number on.
+    rows: VecDeque<RowInputs>,
+    first_row: u32,
+    next_row: u32,
+    state: State,
+    late: bool,
+    path_um: i32,
+    seen: HashMap<Fault, u64>,
+}
+
+impl World {
+    fn boot() -> Self {
+        let (stage, electrodes) = stage();
+        let plans: &'static mut PlanQueue = Box::leak(Box::default());
+        let gate: &'static Gate = Box::leak(Box::default());
+        let lines: &'static mut Lines = Box::leak(Box::default());
+        let (give, take) = plans.split();
+        let (tick_ends, link_ends) = lines.split();
+        let controller = Controller::new(LIMITS, TICK as u32, Fault::Boot, SCALE, give, gate);
+        let controller = controller.expect("valid limits");
+        let deadline = Deadline::new(TICK as u32, 1);
+        let mut world = Self {
+            server: Server::new(link_ends, gate, Memory::new(), TimeStep::MILLISECOND),
+            device: Device::new(controller, tick_ends, deadline),
+            pulses: Pulses::new(stage, take, gate, TICK as u32),
+            electrodes,
+            patient: Patient::new(BOUNDS, OF_ROWS),
+            now_us: 0,
+            timer_us: 250,
+            step_us: Pulses::<Converter, Pin>::FIRST_US,
+            receiver: Receiver::new(),
+            session: NO_SESSION,
+            sequence: 0,
+            pending: None,
+            answered: false,
+            rows: VecDeque::new(),
+            first_row: 0,
+            next_row: 0,
+            state: State::Latched(Fault::Boot),
+            late: false,
+            path_um: 200_000,
+            seen: HashMap::new(),
+        };
+        world.tick();
+        world.ask(Request::Hello);
+        let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
+        world.ask(Request::Upload { place: 0, upload });
+        world.ask(Request::Rest([Some(0.16), None]));
+        world
+    }
+
+    fn see(&mut self) {
+        let electrodes = self.electrodes.borrow();
+        if let Err(problem) = self.patient.sees(self.now_us, &electrodes) {
+            panic!("{problem}, at {} us, {:?}", self.now_us, self.state);
+        }
+    }
+
+    /// A tick, what the link has to say to it, and the pulse timer until the next.
+    fn tick(&mut self) {
+        let tick_us = self
+            .now_us
+            .next_multiple_of(TICK)
+            .max(self.now_us + u64::from(self.now_us.is_multiple_of(TICK)) * TICK);
+        while self.timer_us < tick_us {
+            self.now_us = self.timer_us;
+            self.electrodes.borrow_mut().words = 0;
+            let lasts_us = self.step_us;
+            self.step_us = self.pulses.timer();
+            self.timer_us += u64::from(lasts_us);
+            self.see();
+        }
+        self.now_us = tick_us;
+        let was_armed = self.patient.is_armed();
+        let armed = self.device.tick(0);
+        let late = std::mem::take(&mut self.late);
+        let off = !self.device.finish(100, late) || !armed;
+        if off {
+            self.electrodes.borrow_mut().words = 0;
+            self.pulses.attend();
+        }
+        self.patient.ticked(tick_us);
+        self.server.poll();
+        self.hear();
+        if late {
+            self.patient.ends("a late tick");
+        }
+        // What a device says of itself must be true as well.
+        if off {
+            self.patient.ends("a tick that says so");
+        }
+        if off && (was_armed || armed) {
+            self.patient.forgets(tick_us);
+        }
+        self.see();
+    }
+
+    fn hear(&mut self) {
+        while let Some(byte) = self.server.transmit() {
+            let Some(Ok(frame)) = self.receiver.push(byte, NO_SESSION) else { continue };
+            let message: Message<'_> = postcard::from_bytes(frame.content).expect("a message");
+            match message {
+                Message::Answer { answer, .. } => {
+                    self.answered = true;
+                    match answer {
+                        Answer::Done => self.done(),
+                        Answer::Info(info) => self.session = info.session,
+                        Answer::Report(report) => self.state = report.state,
+                        _ => (),
+                    }
+                }
+                Message::Traces(traces) => {
+                    for row in traces.iter().map(|traced| traced.row) {
+                        while self.first_row < row {
+                            self.rows.pop_front();
+                            self.first_row += 1;
+                        }
+                        assert_eq!(self.first_row, row, "a row that was before");
+                        self.first_row += 1;
+                        let row = self.rows.pop_front().expect("a row that was sent");
+                        self.stepped(row);
+                    }
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    /// What was asked for was done, in this tick.
+    fn done(&mut self) {
+        let now_us = self.now_us;
+        match self.pending.take() {
+            Some(Request::Drive(stimuli)) => {
+                self.patient.drives(now_us, &stimuli);
+                if stimuli.iter().flatten().any(is_beyond) {
+                    self.patient.ends("a demand beyond a limit");
+                }
+            }
+            Some(Request::Readings(readings)) => {
+                let (least, most) = LIMITS.supply_mv;
+                let jump = readings.path_um.is_none_or(|path| path.abs_diff(self.path_um) > 1000);
+                self.path_um = readings.path_um.unwrap_or(self.path_um);
+                self.patient.reads(now_us);
+                if !(least..=most).contains(&readings.supply_mv) {
+                    self.patient.ends("the supply");
+                }
+                if jump {
+                    self.patient.ends("the sensor of the path");
+                }
+                let (least, most) = LIMITS.impedance_ohm;
+                let off = readings.impedance_ohm.iter().flatten();
+                if off.copied().all(|ohm| !(least..=most).contains(&ohm))
+                    && readings.impedance_ohm[0].is_some()
+                    && self.patient.is_driven()
+                {
+                    self.patient.ends("electrodes");
+                }
+            }
+            Some(Request::Stop) => {
+                self.patient.ends("a stop");
+                self.patient.forgets(now_us);
+            }
+            Some(Request::Arm) => self.patient.arms(),
+            Some(Request::Rest(_)) => {
+                self.rows.clear();
+                (self.first_row, self.next_row) = (0, 0);
+            }
+            Some(Request::Rows { rows, .. }) => {
+                self.next_row += rows.len() as u32;
+                self.rows.extend(rows.iter().map(|row| row[0]));
+            }
+            _ => (),
+        }
+    }
+
+    fn stepped(&mut self, row: RowInputs) {
+        let now_us = self.now_us;
+        if !row.activation.is_finite() || !row.stimulation_frequency.is_finite() {
+            self.patient.steps(now_us, None);
+            return self.patient.ends("a row that is no number");
+        }
+        let activation = f64::from(row.activation.clamp(0.0, 1.0));
+        let frequency_tenths_pps = (row.stimulation_frequency * 10.0) as u16;
+        let stimulus = Stimulus {
+            amplitude_ua: amplitude_ua(activation),
+            width_us: ELECTRODE.width_us,
+            gap_us: ELECTRODE.gap_us,
+            frequency_tenths_pps,
+            recovery: ELECTRODE.recovery,
+        };
+        let stimulates = row.activation > 0.0 && frequency_tenths_pps >= 10;
+        self.patient.steps(now_us, stimulates.then_some(stimulus));
+        if stimulates && frequency_tenths_pps > LIMITS.frequency_tenths_pps {
+            self.patient.ends("a row's frequency");
+        }
+    }
+
+    /// Sends a request, and waits for its answer.
+    fn ask(&mut self, request: Request) {
+        while !self.server.is_ready() {
+            self.tick();
+        }
+        let session = if request == Request::Hello { NO_SESSION } else { self.session };
+        let frame = encode(session, self.sequence, &request).expect("a frame");
+        self.sequence = self.sequence.wrapping_add(1);
+        self.pending = Some(request);
+        self.answered = false;
+        self.patient.hears(self.now_us);
+        for byte in frame {
+            self.server.receive(byte);
+        }
+        self.hear();
+        for _ in 0..10 {
+            if self.answered {
+                self.pending = None;
+                return;
+            }
+            self.tick();
+        }
+        panic!("no answer");
+    }
+}
+
+/// Whether a demand is beyond a limit that is named by a field.
+fn is_beyond(stimulus: &Stimulus) -> bool {
+    let Stimulus { amplitude_ua, width_us, frequency_tenths_pps, .. } = *stimulus;
+    let charge = u64::from(amplitude_ua) * u64::from(width_us);
+    amplitude_ua > LIMITS.amplitude_ua
+        || width_us > LIMITS.width_us
+        || frequency_tenths_pps > LIMITS.frequency_tenths_pps
+        || charge > u64::from(LIMITS.charge_nc) * 1000
+}
+
+fn stimulus(chance: &mut Chance) -> Stimulus {
+    let width_us = chance.from(20, 450) as u16;
+    let most_ua = (10_000_000 / u64::from(width_us)).min(40_000);
+    // Now and then beyond a limit.
+    let beyond = |chance: &mut Chance| u64::from(chance.one_in(3000));
+    Stimulus {
+        amplitude_ua: (chance.from(0, most_ua) + beyond(chance) * 45_000) as u32,
+        width_us: width_us + beyond(chance) as u16 * 500,
+        gap_us: chance.from(40, 200) as u16,
+        frequency_tenths_pps: (chance.from(10, 800) + beyond(chance) * 800) as u16,
+        recovery: chance.from(1, 8) as u8,
+    }
+}
+
+fn readings(world: &World, chance: &mut Chance) -> Readings {
+    let fails = |chance: &mut Chance| chance.one_in(2000);
+    let step = chance.below(601) as i32 - 300;
+    let path = (world.path_um + step).clamp(60_000, 400_000);
+    Readings {
+        impedance_ohm: if fails(chance) { [Some(9000); CHANNELS] } else { [Some(1000); CHANNELS] },
+        supply_mv: if fails(chance) { 2500 } else { 3700 },
+        path_um: match () {
+            () if fails(chance) => None,
+            () if fails(chance) => Some(world.path_um + 2000),
+            () if fails(chance) => Some(world.path_um),
+            () => Some(path),
+        },
+    }
+}
+
+fn row(chance: &mut Chance) -> [RowInputs; 2] {
+    let number = |chance: &mut Chance, most: f32| match chance.below(4000) {
+        0 => f32::NAN,
+        1 => f32::INFINITY,
+        2 => -1.0,
+        n if n < 200 => 0.0,
+        _ => most * chance.below(10_001) as f32 / 10_000.0,
+    };
+    let activation = number(chance, 1.0);
+    let stimulation_frequency = number(chance, 60.0);
+    let inputs = RowInputs { activation, path_length: 0.16, stimulation_frequency };
+    [inputs, RowInputs::default()]
+}
+
+/// The next message, or a pause.
+fn next(world: &mut World, chance: &mut Chance, messages: &mut u64) {
+    let request = match chance.below(1000) {
+        0..350 => Request::Readings(readings(world, chance)),
+        350..550 => {
+            let mut stimuli = [None; CHANNELS];
+            for place in &mut stimuli[..OF_ROWS] {
+                // So that mean squares and loads are mostly within their limits.
+                *place = chance.one_in(2).then(|| stimulus(chance));
+            }
+            Request::Drive(stimuli)
+        }
+        550..800 => {
+            let count = chance.from(1, 8) as usize;
+            let rows = std::iter::repeat_with(|| row(chance)).take(count).collect();
+            Request::Rows { first: world.next_row, rows }
+        }
+        800..880 => Request::KeepAlive,
+        880..960 => Request::Report,
+        960..963 => Request::Stop,
+        963..965 => Request::Rest([Some(0.16), None]),
+        965..967 => Request::Acknowledge(Fault::Silence),
+        967..970 => Request::Arm,
+        970 => {
+            world.late = true;
+            return;
+        }
+        971..974 => {
+            for _ in 0..chance.below(600) {
+                world.tick();
+            }
+            return;
+        }
+        _ => {
+            for _ in 0..chance.from(1, 20) {
+                world.tick();
+            }
+            return;
+        }
+    };
+    *messages += 1;
+    world.ask(request);
+    let (State::Latched(fault) | State::Acknowledged { fault, .. }) = world.state else { return };
+    // The host has read that it is off, and arms again.
+    *world.seen.entry(fault).or_default() += 1;
+    for request in [
+        Request::Readings(Readings {
+            supply_mv: 3700,
+            path_um: Some(world.path_um + 1),
+            ..Readings::default()
+        }),
+        Request::Acknowledge(fault),
+        Request::Arm,
+        Request::Report,
+    ] {
+        *messages += 1;
+        world.ask(request);
+    }
+}
+
+#[test]
+fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
+    let count = std::env::var("VM_MESSAGES").ok().and_then(|text| text.parse().ok());
+    let count: u64 = count.unwrap_or(200_000);
+    let started = std::time::Instant::now();
+    let mut chance = Chance(0x0dd_ba11_5eed);
+    let mut world = World::boot();
+    let mut messages = 0;
+    let (mut armed, mut ticks) = (0_u64, 0_u64);
+    while messages < count {
+        next(&mut world, &mut chance, &mut messages);
+        ticks += 1;
+        armed += u64::from(world.patient.is_armed());
+    }
+    println!(
+        "{messages} messages, {} s of time, {} pulses, armed for {} %, {:.1?}; faults that were read: {:?}",
+        world.now_us / 1_000_000,
+        world.patient.pulses,
+        100 * armed / ticks,
+        started.elapsed(),
+        world.seen
+    );
+    // It was not off all the time.
+    assert!(world.patient.pulses > count / 50, "{} pulses", world.patient.pulses);
+    assert!(armed > ticks / 4);
+}
