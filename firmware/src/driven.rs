@@ -11,6 +11,9 @@ use vm_nostd::{
     NaturalContinuous, RecruitmentCurve, State, TimeStep,
 };
 
+#[cfg(test)]
+mod tests;
+
 const _: () = assert!(State::<f32, NaturalContinuous, TYPES>::WORDS <= MOST_WORDS);
 const _: () = assert!(State::<f32, IntramuscularFes, TYPES>::WORDS <= MOST_WORDS);
 

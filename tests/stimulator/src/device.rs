@@ -155,6 +155,11 @@ impl<F: NorFlash> InProcess<F> {
         std::mem::take(&mut self.flowed)
     }
 
+    /// The line loses a byte.
+    pub fn lose(&mut self) {
+        self.server.lost();
+    }
+
     /// The power fails; what is left is the memory.
     pub fn into_memory(self) -> F {
         self.server.into_memory()

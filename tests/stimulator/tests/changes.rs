@@ -1,0 +1,321 @@
+//! Changes that somebody made on purpose and no test noticed: each has one now. `tests/planted` has the changes.
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use embedded_storage::nor_flash::NorFlash;
+use firmware::link::{Electrode, Mode, Request, RowInputs, Upload, VERSION};
+use firmware::safety::{Fault, Observed, Requested, State};
+use firmware::{Limits, RamFlash, Slots, Stimulus};
+use stimulator_tests::bench::{Bench, LIMITS, stimulus};
+use stimulator_tests::client::ClientError;
+use stimulator_tests::device::LIMITS as BOARD;
+use stimulator_tests::host::{Host, READINGS, arm, booted, fes, report};
+use vm_nostd::RecruitmentCurveParams;
+
+const ELECTRODE: Electrode = Electrode {
+    channel: 1,
+    curve: RecruitmentCurveParams {
+        threshold: 4e-3,
+        saturation: 12e-3,
+        chronaxie: 200e-6,
+        slope: 2.0,
+    },
+    width_us: 200,
+    gap_us: 40,
+    recovery: 1,
+};
+
+/// Armed, with a muscle whose electrode rows stimulate.
+fn with_muscle() -> Host {
+    let mut host = booted();
+    let upload = Upload { electrode: Some(ELECTRODE), ..fes() };
+    host.order(&Request::Upload { place: 0, upload }).expect("a muscle");
+    host.order(&Request::Rest([Some(0.16), None])).expect("a path");
+    arm(&mut host, Fault::Boot);
+    host
+}
+
+/// Rows from a number on, as many as a message has.
+fn rows(first: u32, activation: f32, stimulation_frequency: f32) -> Request {
+    let row = RowInputs { activation, path_length: 0.16, stimulation_frequency };
+    let rows = heapless::Vec::from_slice(&[[row, RowInputs::default()]; 8]).expect("room");
+    Request::Rows { first, rows }
+}
+
+#[test]
+fn what_rows_asked_for_is_forgotten_after_a_fault() {
+    let mut host = with_muscle();
+    host.order(&rows(0, 1.0, 80.0)).expect("room");
+    (0..8).for_each(|_| host.line().tick());
+    assert!(host.line().flowed() > 0);
+    host.order(&Request::Stop).expect("a stop");
+    // Before a row is too old.
+    arm(&mut host, Fault::Stopped);
+    host.line().flowed();
+    (0..40).for_each(|_| host.line().tick());
+    assert_eq!(report(&mut host).state, State::Armed);
+    assert_eq!(host.line().flowed(), 0);
+}
+
+#[test]
+fn no_activation_and_less_than_a_pulse_a_second_are_no_pulses() {
+    for (activation, frequency) in [(0.0, 80.0), (-1.0, 80.0), (1.0, 0.9), (1.0, 0.0), (1.0, -5.0)]
+    {
+        let mut host = with_muscle();
+        for first in (0..80).step_by(8) {
+            host.order(&rows(first, activation, frequency)).expect("room");
+            (0..8).for_each(|_| host.line().tick());
+        }
+        assert_eq!(host.line().flowed(), 0, "{activation} {frequency}");
+        // And no fault.
+        assert_eq!(report(&mut host).state, State::Armed, "{activation} {frequency}");
+    }
+    let mut host = with_muscle();
+    host.order(&rows(0, 1.0, 1.0)).expect("room");
+    (0..8).for_each(|_| host.line().tick());
+    assert!(host.line().flowed() > 0, "one pulse a second");
+}
+
+#[test]
+fn an_electrode_is_only_for_fes() {
+    let mut host = booted();
+    let upload = Upload { mode: Mode::Continuous, electrode: Some(ELECTRODE), ..fes() };
+    let refused = host.order(&Request::Upload { place: 0, upload });
+    let reason = "electrode: only for FES = 1: must be 0 to 0".to_owned();
+    assert_eq!(refused, Err(ClientError::Refused { reason, no_room: false }));
+    // A muscle without one is taken.
+    let upload = Upload { mode: Mode::Continuous, ..fes() };
+    host.order(&Request::Upload { place: 0, upload }).expect("a muscle");
+}
+
+/// A stimulator at 100 pps whose tick does not come any more, at any time of its period.
+#[test]
+fn a_permission_holds_for_two_ticks_and_no_longer() {
+    let mut latest = 0;
+    for after in 0..50 {
+        let mut bench = Bench::new(Fault::Boot);
+        bench.inject(|_, r, _| {
+            let stimulus = Stimulus { frequency_tenths_pps: 1000, ..stimulus(5_000) };
+            let stimuli = [Some(stimulus), Some(stimulus), Some(stimulus), Some(stimulus)];
+            *r = Requested { stimuli, ..Requested::NOTHING };
+        });
+        bench.tick();
+        bench.arm(Fault::Boot);
+        bench.flows(100 + after);
+        let last = bench.tick * 1000;
+        bench.hangs = true;
+        bench.flows(10);
+        // The last tick began a ms before.
+        let begun = bench.put_out.last().expect("pulses").at_us.saturating_sub(last - 1000);
+        assert!(begun <= 2_000 + 500, "a pulse {begun} us after the last tick");
+        latest = latest.max(begun);
+    }
+    assert!(latest > 1_200, "{latest} us");
+}
+
+/// Electrodes of a pulse that was cut short: connected for 20 ms, then off.
+#[test]
+fn a_discharge_lasts_for_twenty_milliseconds_and_ends() {
+    let mut bench = Bench::running();
+    bench.until_current();
+    bench.controller.fail(Fault::Stopped);
+    bench.electrodes.borrow_mut().words = 0;
+    bench.pulses.attend();
+    let cut_us = bench.timer;
+    let connected = |bench: &Bench| bench.electrodes.borrow().channels.contains(&true);
+    while bench.timer < cut_us + 60_000 && connected(&bench) {
+        assert_eq!(bench.flowing(), 0);
+        if bench.timer >= bench.tick * 1000 {
+            bench.control();
+        }
+        bench.run_out();
+    }
+    let lasted_us = bench.timer - cut_us;
+    assert!((19_500..=20_750).contains(&lasted_us), "{lasted_us} us");
+}
+
+#[test]
+fn a_fault_of_a_moment_between_the_two_steps_of_arming_is_not_missed() {
+    let after = |change: fn(&mut Observed)| {
+        let mut bench = Bench::new(Fault::Boot);
+        bench.tick();
+        bench.controller.acknowledge(Fault::Boot).expect("its name");
+        bench.inject(move |o, _, tick| {
+            if tick == 0 {
+                change(o);
+            }
+        });
+        bench.flows(5);
+        bench.controller.state()
+    };
+    assert_eq!(after(|o| o.memory_is_intact = false), State::Latched(Fault::Checksum));
+    assert_eq!(after(|o| o.in_time = false), State::Latched(Fault::Deadline));
+    assert_eq!(after(|o| o.output_answers = false), State::Latched(Fault::Output));
+    // What is there still when somebody arms is seen then.
+    let supply = after(|o| o.supply_mv = 0);
+    assert!(matches!(supply, State::Acknowledged { fault: Fault::Boot, .. }), "{supply:?}");
+}
+
+/// The converter misses one word of a pulse, and answers again.
+#[test]
+fn one_word_that_the_converter_does_not_take_is_reported() {
+    for word in 0..6 {
+        let mut bench = Bench::running();
+        bench.until_current();
+        (0..word).for_each(|_| bench.run_out());
+        bench.electrodes.borrow_mut().broken_converter = true;
+        // The next step that speaks to it.
+        let mut steps = 0;
+        while bench.controller.state() == State::Armed && steps < 200 {
+            if steps == 1 {
+                bench.electrodes.borrow_mut().broken_converter = false;
+            }
+            if bench.timer >= bench.tick * 1000 {
+                bench.control();
+            }
+            bench.run_out();
+            steps += 1;
+        }
+        // Between pulses nothing is said to it.
+        if word < 5 {
+            assert_eq!(bench.controller.state(), State::Latched(Fault::Output), "word {word}");
+        }
+    }
+}
+
+/// As much as a limit says is allowed; the next step is not.
+#[test]
+fn a_demand_that_is_equal_to_its_limit_is_allowed() {
+    let base = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 50,
+        frequency_tenths_pps: 500,
+        recovery: 1,
+    };
+    // 10 mA for 200 us, both phases, 50 times a second: 1.414 mA r.m.s.
+    let tight = Limits {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        frequency_tenths_pps: 500,
+        charge_nc: 2_000,
+        rms_ua: 1_415,
+        ..BOARD
+    };
+    let state = |limits: Limits, stimulus: Stimulus| {
+        let mut bench = Bench::with(limits, 1000, Fault::Boot);
+        bench.inject(|_, r, _| *r = Requested::NOTHING);
+        bench.tick();
+        bench.arm(Fault::Boot);
+        bench.inject(move |_, r, _| {
+            *r = Requested { stimuli: [Some(stimulus), None, None, None], ..Requested::NOTHING };
+        });
+        bench.flows(100);
+        (bench.controller.state(), bench.put_out.len())
+    };
+    let (allowed, pulses) = state(tight, base);
+    assert_eq!(allowed, State::Armed);
+    assert!(pulses >= 4, "{pulses}");
+    for (limits, stimulus, fault) in [
+        (tight, Stimulus { amplitude_ua: 10_001, ..base }, Fault::Amplitude),
+        (tight, Stimulus { width_us: 201, ..base }, Fault::Width),
+        (tight, Stimulus { frequency_tenths_pps: 501, ..base }, Fault::Frequency),
+        (Limits { charge_nc: 1_999, ..tight }, base, Fault::Charge),
+        (Limits { rms_ua: 1_414, ..tight }, base, Fault::RootMeanSquare),
+    ] {
+        assert_eq!(state(limits, stimulus), (State::Latched(fault), 0));
+    }
+}
+
+/// The same of what is observed: both ends of each range are in it.
+#[test]
+fn a_reading_that_is_equal_to_its_limit_is_right() {
+    let state = |change: fn(&mut Observed)| {
+        let mut bench = Bench::running();
+        bench.inject(move |o, _, _| change(o));
+        bench.flows(3);
+        bench.controller.state()
+    };
+    let (least, most) = LIMITS.supply_mv;
+    assert_eq!((least, most), (3000, 4300));
+    assert_eq!(state(|o| o.supply_mv = 3000), State::Armed);
+    assert_eq!(state(|o| o.supply_mv = 4300), State::Armed);
+    assert_eq!(state(|o| o.supply_mv = 2999), State::Latched(Fault::Supply));
+    assert_eq!(state(|o| o.supply_mv = 4301), State::Latched(Fault::Supply));
+    assert_eq!(LIMITS.impedance_ohm, (100, 5000));
+    assert_eq!(state(|o| o.impedance_ohm[0] = Some(100)), State::Armed);
+    assert_eq!(state(|o| o.impedance_ohm[0] = Some(5000)), State::Armed);
+    assert_eq!(state(|o| o.impedance_ohm[0] = Some(99)), State::Latched(Fault::ElectrodeShort));
+    assert_eq!(state(|o| o.impedance_ohm[0] = Some(5001)), State::Latched(Fault::ElectrodeOpen));
+    // An electrode that does not stimulate may be anything.
+    assert_eq!(state(|o| o.impedance_ohm[3] = Some(1)), State::Armed);
+    // 1,000 mm/s are 1,000 um in a tick.
+    let jump = |by: i32| {
+        let mut bench = Bench::running();
+        let mut path = 160_000;
+        bench.inject(|o, _, _| o.path_um = Some(160_000));
+        bench.flows(3);
+        bench.inject(move |o, _, _| {
+            path += by;
+            o.path_um = Some(path);
+        });
+        bench.flows(3);
+        bench.controller.state()
+    };
+    assert_eq!(jump(1000), State::Armed);
+    assert_eq!(jump(-1000), State::Armed);
+    assert_eq!(jump(1001), State::Latched(Fault::SensorJump));
+}
+
+/// The slot that was written after the greatest generation there is counts.
+#[test]
+fn generations_of_slots_go_round() {
+    const HALF: u32 = 4096;
+    let slot = |generation: u32, content: &[u8]| {
+        let mut bytes = Vec::new();
+        let length = u32::try_from(content.len()).expect("short");
+        for field in [0x4D53_4D00 + u32::from(VERSION), generation, length] {
+            bytes.extend(field.to_le_bytes());
+        }
+        let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+        let mut digest = crc.digest();
+        digest.update(&bytes);
+        digest.update(content);
+        bytes.extend(digest.finalize().to_le_bytes());
+        bytes.extend(content);
+        bytes
+    };
+    for (first, second, newest) in [
+        (u32::MAX, 0, "second"),
+        (0, u32::MAX, "first"),
+        (5, 6, "second"),
+        (6, 5, "first"),
+        (u32::MAX - 1, u32::MAX, "second"),
+        (0x7fff_ffff, 0x8000_0000, "second"),
+    ] {
+        let mut memory = RamFlash::<8192>::new();
+        memory.write(0, &slot(first, b"first")).expect("memory");
+        memory.write(HALF, &slot(second, b"second")).expect("memory");
+        let mut slots = Slots::new(memory);
+        assert_eq!(slots.load(), Some(newest.as_bytes()), "{first:x} {second:x}");
+        // What is stored next is newer than both.
+        slots.store(b"third").expect("memory");
+        assert_eq!(slots.load(), Some(b"third".as_slice()), "{first:x} {second:x}");
+    }
+}
+
+/// Bytes that the line has lost are a frame that is broken, whatever comes after them.
+#[test]
+fn bytes_that_were_lost_break_the_frame_they_belong_to() {
+    let mut host = booted();
+    let broken = report(&mut host).frames.broken;
+    let (session, sequence) = host.session();
+    let frame = firmware::link::encode(session, sequence, &Request::Readings(READINGS));
+    let frame = frame.expect("a frame");
+    host.send_raw(&frame[..5]);
+    host.line().tick();
+    host.line().lose();
+    host.send_raw(&frame[5..]);
+    (0..5).for_each(|_| host.line().tick());
+    host.listen();
+    assert_eq!(report(&mut host).frames.broken, broken + 1);
+}
