@@ -319,3 +319,49 @@ fn bytes_that_were_lost_break_the_frame_they_belong_to() {
     host.listen();
     assert_eq!(report(&mut host).frames.broken, broken + 1);
 }
+
+/// A stimulus of no amplitude is none: its electrode is not looked at, and neither session nor sensor grow older.
+#[test]
+fn a_stimulus_of_no_amplitude_is_no_stimulation() {
+    let mut bench = Bench::running();
+    bench.inject(|o, r, _| {
+        *r = Requested { stimuli: [Some(stimulus(0)); 4], ..Requested::NOTHING };
+        o.impedance_ohm = [Some(9_000); 4];
+        o.path_um = Some(160_000);
+    });
+    // Longer than a session, and than a sensor may stay the same.
+    bench.flows(6_000);
+    assert_eq!(bench.controller.state(), State::Armed);
+    bench.inject(|o, _, _| o.path_um = Some(160_000));
+    bench.flows(1_900);
+    assert_eq!(bench.controller.state(), State::Armed);
+}
+
+/// A sensor that has moved in a pause works.
+#[test]
+fn a_sensor_that_moves_in_a_pause_is_not_stuck() {
+    let mut bench = Bench::running();
+    bench.inject(|o, _, _| o.path_um = Some(160_000));
+    bench.flows(1_500);
+    bench.inject(|o, r, _| {
+        *r = Requested::NOTHING;
+        o.path_um = Some(160_001);
+    });
+    bench.flows(2);
+    bench.inject(|o, _, _| o.path_um = Some(160_001));
+    bench.flows(1_500);
+    assert_eq!(bench.controller.state(), State::Armed);
+    bench.flows(600);
+    assert_eq!(bench.controller.state(), State::Latched(Fault::SensorStuck));
+}
+
+#[test]
+fn what_is_wrong_is_told_before_anybody_arms() {
+    let mut bench = Bench::new(Fault::Boot);
+    bench.tick();
+    assert_eq!(bench.controller.wrong(), None);
+    bench.inject(|o, _, _| o.supply_mv = 0);
+    bench.tick();
+    assert_eq!(bench.controller.wrong(), Some(Fault::Supply));
+    assert_eq!(bench.controller.state(), State::Latched(Fault::Boot));
+}
