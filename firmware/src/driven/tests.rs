@@ -3,6 +3,7 @@
 use super::{Demand, Driven};
 use crate::link::{Electrode, Mode, RowInputs, RowOutputs, Upload};
 use crate::rig::MUSCLE;
+use crate::stimulus::Stimulus;
 use vm_nostd::{RecruitmentCurve, RecruitmentCurveParams, TimeStep};
 
 const CURVE: RecruitmentCurveParams =
@@ -109,8 +110,11 @@ fn a_row_asks_for_what_recruits_its_activation_at_its_frequency() {
 #[test]
 fn every_kind_of_demand_is_told_from_the_others() {
     let Demand::Pulses(channel, stimulus) = driven().demand(&INPUTS) else { panic!("no pulses") };
+    let zeros =
+        Stimulus { amplitude_ua: 0, width_us: 0, gap_us: 0, frequency_tenths_pps: 0, recovery: 0 };
     let demands = [
         Demand::Nothing,
+        Demand::Pulses(0, zeros),
         Demand::NotFinite,
         Demand::Pulses(channel, stimulus),
         Demand::Pulses(channel + 1, stimulus),

@@ -215,6 +215,9 @@ fn a_demand_that_is_equal_to_its_limit_is_allowed() {
     let (allowed, pulses) = state(tight, base);
     assert_eq!(allowed, State::Armed);
     assert!(pulses >= 4, "{pulses}");
+    // 10 mA for 200 us, both phases, 25 times a second: 1 mA r.m.s. to the last digit.
+    let slow = Stimulus { frequency_tenths_pps: 250, ..base };
+    assert_eq!(state(Limits { rms_ua: 1_000, ..tight }, slow).0, State::Armed);
     for (limits, stimulus, fault) in [
         (tight, Stimulus { amplitude_ua: 10_001, ..base }, Fault::Amplitude),
         (tight, Stimulus { width_us: 201, ..base }, Fault::Width),
