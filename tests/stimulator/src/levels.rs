@@ -1,7 +1,7 @@
 //! The firmware's three levels on fakes, of which a higher one may run before each access of a lower one to what
 //! they share. Whether it does is a choice of the explorer.
 
-use crate::device::Memory;
+use crate::device::{Memory, Numbers};
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use crate::explorer::choose;
 use firmware::link::{
@@ -9,7 +9,8 @@ use firmware::link::{
 };
 use firmware::safety::Fault;
 use firmware::{
-    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, explore,
+    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, ServerRoom,
+    explore,
 };
 use self_cell::{MutBorrow, self_cell};
 use std::cell::{Cell, RefCell};
@@ -34,13 +35,13 @@ enum Level {
 struct Statics {
     plans: PlanQueue,
     gate: Gate,
-    lines: Lines,
+    room: ServerRoom,
 }
 
 struct Tasks<'q> {
     pulses: RefCell<Pulses<'q, Converter, Pin>>,
     device: RefCell<Device<'q>>,
-    server: RefCell<Server<'q, Memory>>,
+    server: RefCell<Server<'q, Memory, Numbers>>,
 }
 
 self_cell!(
@@ -96,13 +97,22 @@ impl Levels {
         explore::before_each_access(None);
         let (stage, electrodes) = stage();
         let firmware = Firmware::new(MutBorrow::new(Statics::default()), |statics| {
-            let Statics { plans, gate, lines } = statics.borrow_mut();
+            let Statics { plans, gate, room } = statics.borrow_mut();
+            // What ticks and link hand each other are statics for good.
+            let lines: &'static mut Lines = Box::leak(Box::default());
             let gate = &*gate;
             let (give, take) = plans.split();
             let (tick_ends, link_ends) = lines.split();
             let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate)
                 .expect("valid limits");
-            let server = Server::new(link_ends, gate, Memory::new(), TimeStep::MILLISECOND);
+            let server = Server::new(
+                room,
+                link_ends,
+                gate,
+                Memory::new(),
+                Numbers(1),
+                TimeStep::MILLISECOND,
+            );
             Tasks {
                 pulses: RefCell::new(Pulses::new(stage, take, gate, TICK)),
                 device: RefCell::new(Device::new(controller, tick_ends, Deadline::new(TICK, 1))),
@@ -132,7 +142,7 @@ impl Levels {
         CURRENT.set(Some(Rc::clone(&levels)));
         explore::before_each_access(Some(before_each_access));
         levels.pass(1);
-        levels.ask(&Request::Hello);
+        levels.ask(&Request::Hello { nonce: 1 });
         levels
     }
 
@@ -281,7 +291,7 @@ impl Levels {
     /// A frame arrives. Its last byte is the one that does something: before the others, nothing is shared that is
     /// not before it.
     pub fn send(&self, request: &Request) {
-        let hello = *request == Request::Hello;
+        let hello = matches!(request, Request::Hello { .. });
         let session = if hello { NO_SESSION } else { self.session.get() };
         let frame = encode(session, self.sequence.get(), request).expect("a frame");
         self.sequence.update(|before| before.wrapping_add(1));

@@ -2,7 +2,8 @@
 //! tick and link: the firmware's own code, with a choice before each access to what they share.
 //!
 //! Interrupts of the pulse timer come where they are chosen to, two more in the tick of a fault than `VM_INTERRUPTS`
-//! says, or as many as it says anywhere from the fault until pulses flow again: 1 where it is not set.
+//! says, or as many as it says anywhere from the fault until pulses flow again: 1 where it is not set. A run leaves 7 KB
+//! behind, for what levels hand each other are statics: with 2 there have to be 8 GB.
 
 use firmware::link::{Answer, Readings, Request, RowInputs};
 use firmware::safety::{CHANNELS, Fault, State};
@@ -235,8 +236,10 @@ fn orders_and_rows(pulse_interrupts: u32, tick_interrupts: u32) -> Result<(), St
 #[test]
 fn whatever_interrupts_whatever_no_order_outcome_row_or_trace_is_lost_or_doubled() {
     let ticks = interrupts() + 1;
-    let one = explore(|| orders_and_rows(interrupts().min(1), 2)).expect("nothing lost");
+    let one = explore(|| orders_and_rows(1, interrupts())).expect("nothing lost");
     let many = explore(|| orders_and_rows(0, ticks)).expect("nothing lost");
-    println!("{one} interleavings of queues with a pulse, {many} with {ticks} ticks");
-    assert!(one + many > 500);
+    println!(
+        "{one} interleavings of queues with a tick less and a pulse, {many} with {ticks} ticks"
+    );
+    assert!(one + many > 50);
 }

@@ -13,7 +13,7 @@ use firmware::{
     Controller, Deadline, Device, Gate, Limits, Lines, MUSCLE, PlanQueue, Pulses, Server, Stimulus,
 };
 use std::collections::{HashMap, VecDeque};
-use stimulator_tests::device::{LIMITS as BOARD, Memory};
+use stimulator_tests::device::{LIMITS as BOARD, Memory, Numbers};
 use stimulator_tests::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use stimulator_tests::patient::{Bounds, Patient};
 use vm_nostd::{RecruitmentCurveParams, TimeStep};
@@ -111,7 +111,7 @@ impl Chance {
 
 /// Device, patient, and a host that knows what it has said.
 struct World {
-    server: Server<'static, Memory>,
+    server: Server<'static, Memory, Numbers>,
     device: Device<'static>,
     pulses: Pulses<'static, Converter, Pin>,
     electrodes: Shared,
@@ -148,7 +148,14 @@ impl World {
         let controller = controller.expect("valid limits");
         let deadline = Deadline::new(TICK as u32, 1);
         let mut world = Self {
-            server: Server::new(link_ends, gate, Memory::new(), TimeStep::MILLISECOND),
+            server: Server::new(
+                Box::leak(Box::default()),
+                link_ends,
+                gate,
+                Memory::new(),
+                Numbers(1),
+                TimeStep::MILLISECOND,
+            ),
             device: Device::new(controller, tick_ends, deadline),
             pulses: Pulses::new(stage, take, gate, TICK as u32),
             electrodes,
@@ -170,7 +177,7 @@ impl World {
             seen: HashMap::new(),
         };
         world.tick();
-        world.ask(Request::Hello);
+        world.ask(Request::Hello { nonce: 1 });
         let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
         world.ask(Request::Upload { place: 0, upload });
         world.ask(Request::Rest([Some(0.16), None]));
@@ -328,7 +335,8 @@ impl World {
         while !self.server.is_ready() {
             self.tick();
         }
-        let session = if request == Request::Hello { NO_SESSION } else { self.session };
+        let hello = matches!(request, Request::Hello { .. });
+        let session = if hello { NO_SESSION } else { self.session };
         let frame = encode(session, self.sequence, &request).expect("a frame");
         self.sequence = self.sequence.wrapping_add(1);
         self.pending = Some(request);
