@@ -87,8 +87,25 @@ pub struct Lines {
     outcomes: Queue<Outcome, 2>,
     rows: Queue<Guarded<Row>, WAITING>,
     traces: Queue<Traced, WAITING>,
+}
+
+/// Room for the muscles of the tick, and for those that the link gives it next: large, and never moved.
+pub struct Banks {
     muscles: Bank,
     spare: Bank,
+}
+
+impl Default for Banks {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Banks {
+    /// Without muscles.
+    pub const fn new() -> Self {
+        Self { muscles: [const { None }; MUSCLES], spare: [const { None }; MUSCLES] }
+    }
 }
 
 impl Default for Lines {
@@ -105,13 +122,11 @@ impl Lines {
             outcomes: Queue::new(),
             rows: Queue::new(),
             traces: Queue::new(),
-            muscles: [const { None }; MUSCLES],
-            spare: [const { None }; MUSCLES],
         }
     }
 
-    /// The tick's ends and the link's.
-    pub fn split(&'static mut self) -> (TickEnds<'static>, LinkEnds<'static>) {
+    /// The tick's ends and the link's, which give each other two banks of muscles.
+    pub fn split(&mut self, banks: &'static mut Banks) -> (TickEnds<'_>, LinkEnds<'_>) {
         let (give_order, take_order) = self.orders.split();
         let (give_outcome, take_outcome) = self.outcomes.split();
         let (give_row, take_row) = self.rows.split();
@@ -122,14 +137,14 @@ impl Lines {
                 outcomes: Giver(give_outcome),
                 rows: Taker(take_row),
                 traces: Giver(give_trace),
-                muscles: &mut self.muscles,
+                muscles: &mut banks.muscles,
             },
             LinkEnds {
                 orders: Giver(give_order),
                 outcomes: Taker(take_outcome),
                 rows: Giver(give_row),
                 traces: Taker(take_trace),
-                spare: Some(&mut self.spare),
+                spare: Some(&mut banks.spare),
             },
         )
     }

@@ -42,7 +42,7 @@ mod waveform;
 
 pub use controller::Controller;
 pub use deadline::Deadline;
-pub use device::{Device, Lines, LinkEnds, MUSCLES, TICK_US, TYPES, TickEnds};
+pub use device::{Banks, Device, Lines, LinkEnds, MUSCLES, TICK_US, TYPES, TickEnds};
 pub use gate::Gate;
 pub use guarded::{Guarded, Sum};
 pub use limits::{LimitError, Limits};

@@ -21,8 +21,8 @@ mod app {
     use defmt_rtt as _;
     use firmware::safety::Fault;
     use firmware::{
-        Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, ServerRoom,
-        TICK_US,
+        Banks, Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server,
+        ServerRoom, TICK_US,
     };
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
@@ -56,12 +56,14 @@ mod app {
         gate: Gate = Gate::new(),
         plans: PlanQueue = Queue::new(),
         lines: Lines = Lines::new(),
+        banks: Banks = Banks::new(),
         bytes: Queue<Received, WAITING> = Queue::new(),
         room: ServerRoom = ServerRoom::new(),
         flash: EmulatedFlash = EmulatedFlash::new(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
-        let init::LocalResources { gate, plans, lines, bytes, room, flash, .. } = context.local;
+        let init::LocalResources { gate, plans, lines, banks, bytes, room, flash, .. } =
+            context.local;
         let Board {
             stage,
             mut pulse_timer,
@@ -78,7 +80,7 @@ mod app {
         let Ok(step) = TimeStep::from_seconds(f64::from(TICK_US) * 1e-6) else { board::reset() };
         let gate: &'static Gate = gate;
         let (give_plan, take_plan) = plans.split();
-        let (tick_ends, link_ends) = lines.split();
+        let (tick_ends, link_ends) = lines.split(banks);
         let (received, arrived) = bytes.split();
         let Ok(controller) = Controller::new(LIMITS, TICK_US, boot, SCALE, give_plan, gate) else {
             board::reset()

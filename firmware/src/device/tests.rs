@@ -60,7 +60,7 @@ impl Bench {
         let gate: &'static Gate = Box::leak(Box::default());
         let lines: &'static mut Lines = Box::leak(Box::default());
         let (give, plans) = queue.split();
-        let (tick, ends) = lines.split();
+        let (tick, ends) = lines.split(Box::leak(Box::default()));
         let controller = Controller::new(limits, TICK_US, Fault::Boot, SCALE, give, gate);
         let controller = controller.expect("valid limits");
         let device = Device::new(controller, tick, Deadline::new(TICK_US, 1));

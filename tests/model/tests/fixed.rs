@@ -290,7 +290,7 @@ fn muscles_that_fixed_point_cannot_hold_are_refused_by_name() {
     assert!(message.contains("parallel.stiffness: force of the longest"), "{message}");
     let message = refused(|p| {
         (p.elements.parallel.stiffness, p.elements.parallel.toe) = (1.0, 0.01);
-        (p.elements.parallel.slack_length, p.max_path_length) = (0.8, 0.12);
+        (p.elements.parallel.slack_length, p.max_path_length) = (0.8, 0.11);
     });
     assert!(message.contains("parallel.toe: longest fascicles"), "{message}");
 }

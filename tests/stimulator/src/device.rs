@@ -67,7 +67,7 @@ impl<F: NorFlash> InProcess<F> {
         let lines: &'static mut Lines = Box::leak(Box::default());
         let randomness: &'static mut dyn Randomness = Box::leak(randomness);
         let (give, take) = plans.split();
-        let (tick_ends, link_ends) = lines.split();
+        let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
         let controller =
             Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate).expect("valid limits");
         Self {

@@ -35,6 +35,7 @@ enum Level {
 struct Statics {
     plans: PlanQueue,
     gate: Gate,
+    lines: Lines,
     room: ServerRoom,
 }
 
@@ -97,12 +98,10 @@ impl Levels {
         explore::before_each_access(None);
         let (stage, electrodes) = stage();
         let firmware = Firmware::new(MutBorrow::new(Statics::default()), |statics| {
-            let Statics { plans, gate, room } = statics.borrow_mut();
-            // What ticks and link hand each other are statics for good.
-            let lines: &'static mut Lines = Box::leak(Box::default());
+            let Statics { plans, gate, lines, room } = statics.borrow_mut();
             let gate = &*gate;
             let (give, take) = plans.split();
-            let (tick_ends, link_ends) = lines.split();
+            let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
             let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate)
                 .expect("valid limits");
             let server = Server::new(

@@ -298,7 +298,8 @@ fn generations_of_slots_go_round() {
         let mut memory = RamFlash::<8192>::new();
         memory.write(0, &slot(first, b"first")).expect("memory");
         memory.write(HALF, &slot(second, b"second")).expect("memory");
-        let mut slots = Slots::new(memory);
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(memory, &mut buffer);
         assert_eq!(slots.load(), Some(newest.as_bytes()), "{first:x} {second:x}");
         // What is stored next is newer than both.
         slots.store(b"third").expect("memory");

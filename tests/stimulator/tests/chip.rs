@@ -239,15 +239,18 @@ fn why_something_was_not_stored_is_named() {
         (vec![Not, Not, Silently], NotStored::Kept),
     ];
     for (fails, reason) in cases {
-        let mut slots = Slots::new(flash(|_| ()));
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(flash(|_| ()), &mut buffer);
         slots.store(b"first").expect("a memory");
         let mut memory = slots.into_memory();
         memory.controller().fails = fails.clone().into();
-        let mut slots = Slots::new(memory);
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(memory, &mut buffer);
         assert_eq!(slots.store(b"second"), Err(reason));
         let mut memory = slots.into_memory();
         memory.controller().busy_until = memory.controller().counts.get();
-        let mut slots = Slots::new(memory);
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(memory, &mut buffer);
         assert_eq!(slots.load(), Some(&b"first"[..]), "{reason:?}");
         assert_eq!(slots.store(b"third"), Ok(()), "{reason:?}");
         assert_eq!(slots.load(), Some(&b"third"[..]));

@@ -143,7 +143,7 @@ impl World {
         let gate: &'static Gate = Box::leak(Box::default());
         let lines: &'static mut Lines = Box::leak(Box::default());
         let (give, take) = plans.split();
-        let (tick_ends, link_ends) = lines.split();
+        let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
         let controller = Controller::new(LIMITS, TICK as u32, Fault::Boot, SCALE, give, gate);
         let controller = controller.expect("valid limits");
         let deadline = Deadline::new(TICK as u32, 1);

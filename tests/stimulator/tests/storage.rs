@@ -187,13 +187,16 @@ impl NorFlash for Unreadable {
 #[test]
 fn a_memory_that_cannot_be_read_loses_nothing() {
     for slots_used in 1..=2 {
-        let mut slots = Slots::new(RamFlash::<BYTES>::new());
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(RamFlash::<BYTES>::new(), &mut buffer);
         (0..slots_used).for_each(|seed| slots.store(&content(seed, 50)).expect("a memory"));
         let memory = slots.into_memory();
         for fails in 1..=2 {
-            let mut slots = Slots::new(Unreadable { memory: memory.clone(), fails });
+            let mut buffer = [0; _];
+            let mut slots = Slots::new(Unreadable { memory: memory.clone(), fails }, &mut buffer);
             assert_eq!(slots.store(&content(9, 60)), Err(NotStored::Read));
-            let mut slots = Slots::new(slots.into_memory().memory);
+            let mut buffer = [0; _];
+            let mut slots = Slots::new(slots.into_memory().memory, &mut buffer);
             assert_eq!(slots.load(), Some(content(slots_used - 1, 50).as_slice()));
         }
     }
