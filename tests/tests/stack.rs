@@ -29,6 +29,9 @@ fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
     assert!(current, "the firmware's README is not what is computed: cargo vm stack --write");
 }
 
+/// A change of a description, and what is said of it.
+type Case = (fn(&mut Description), &'static str);
+
 #[test]
 fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
     let Some(image) = image() else { return };
@@ -37,7 +40,7 @@ fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
         change(&mut description);
         stack::report(&image, &description).expect("a report").problems.join("\n")
     };
-    let cases: [(fn(&mut Description), &str); 8] = [
+    let cases: [Case; 8] = [
         (
             |it| it.handlers.retain(|handler| handler.function != "TIM2"),
             "vector 44 is TIM2, and described as DefaultHandler",
