@@ -82,7 +82,15 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     }
 }
 
-/// How many instructions behind it an IT makes conditional.
-pub(super) fn conditional_behind(instruction: &Instruction) -> usize {
-    if instruction.class == Class::IfThen { instruction.mnemonic().len() - 1 } else { 0 }
+/// Which of the instructions behind an IT execute if its condition holds; all others do if it does not.
+pub(super) fn conditional_behind(instruction: &Instruction) -> Option<Vec<bool>> {
+    let then_else = instruction.mnemonic().strip_prefix('i')?;
+    let is_one = instruction.class == Class::IfThen;
+    is_one.then(|| then_else.chars().map(|letter| letter == 't').collect())
+}
+
+/// Whether it may change what later conditions are told by.
+pub(super) fn sets_flags(instruction: &Instruction) -> bool {
+    let name = instruction.mnemonic();
+    ["cmp", "cmn", "tst", "teq", "vmrs", "msr"].iter().any(|setter| name.starts_with(setter))
 }

@@ -1,6 +1,6 @@
 //! One function: how deep it goes by itself, and from how deep it calls others.
 
-use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack};
+use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack, sets_flags};
 use crate::cycles::{Decoded, Image};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -87,11 +87,11 @@ impl<'a> Functions<'a> {
             return walked;
         };
         let inside = home.address..home.address + home.size;
-        let mut depths: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        let mut conditional = BTreeSet::new();
-        let mut ahead = vec![(entry, 0_u32)];
-        while let Some((at, depth)) = ahead.pop() {
-            let seen = depths.entry(at).or_default();
+        let mut depths: BTreeMap<(u32, Vec<bool>), Vec<u32>> = BTreeMap::new();
+        // Where, how deep, and which of the next instructions execute, where an IT says so.
+        let mut ahead = vec![(entry, 0_u32, Vec::new())];
+        while let Some((at, depth, block)) = ahead.pop() {
+            let seen = depths.entry((at, block.clone())).or_default();
             // Deeper than before, or nothing new.
             if seen.last().is_some_and(|&before| before >= depth) {
                 continue;
@@ -113,10 +113,16 @@ impl<'a> Functions<'a> {
                 unknown.insert(at, format!("{what}: {}", instruction.text));
             };
             let next = at + instruction.size;
-            let mut behind = next;
-            for _ in 0..conditional_behind(&instruction) {
-                conditional.insert(behind);
-                behind += self.decoded.at(behind).map_or(2, |instruction| instruction.size);
+            let inverted = |block: &[bool]| block.iter().map(|executes| !executes).collect();
+            if let Some(block) = conditional_behind(&instruction) {
+                ahead.push((next, depth, inverted(&block)));
+                ahead.push((next, depth, block));
+                continue;
+            }
+            let rest = block.get(1..).unwrap_or_default().to_vec();
+            if block.first() == Some(&false) {
+                ahead.push((next, depth, rest));
+                continue;
             }
             let moved = match on_stack(&instruction) {
                 OnStack::Moves(bytes) => i64::from(depth) - i64::from(bytes),
@@ -135,12 +141,10 @@ impl<'a> Functions<'a> {
             };
             walked.own = walked.own.max(after);
             let call = |target| Call { at, depth: after, target };
-            // What may not execute leaves the stack as it was.
-            let may_not = conditional.contains(&at);
-            let mut goes_on = may_not.then_some(after.max(depth));
+            let mut goes_on = None;
             let mut jumps = Vec::new();
             match goes(&instruction) {
-                Goes::On => goes_on = Some(goes_on.unwrap_or(after)),
+                Goes::On => goes_on = Some(after),
                 Goes::To(target) => jumps.push(target),
                 Goes::ToOrOn(target) => {
                     jumps.push(target);
@@ -174,14 +178,17 @@ impl<'a> Functions<'a> {
             }
             for target in jumps {
                 if inside.contains(&target) && (target != entry || after == 0) {
-                    ahead.push((target, after));
+                    ahead.push((target, after, Vec::new()));
                 } else {
                     // A tail call.
                     walked.calls.insert(call(Some(target)));
                     walked.returns |= self.returns(target);
                 }
             }
-            ahead.extend(goes_on.map(|depth| (next, depth)));
+            if sets_flags(&instruction) && !rest.is_empty() {
+                ahead.extend(goes_on.map(|depth| (next, depth, inverted(&rest))));
+            }
+            ahead.extend(goes_on.map(|depth| (next, depth, rest)));
         }
         walked
     }
@@ -259,6 +266,20 @@ mod tests {
     fn a_return_that_is_conditional_goes_on_as_deep_as_it_was() {
         // push {r4, lr}; cmp r0, #0; it eq; popeq {r4, pc}; sub sp, #8; add sp, #8; pop {r4, pc}
         assert_eq!(own(&[0xB510, 0x2800, 0xBF08, 0xBD10, 0xB082, 0xB002, 0xBD10]), 16);
+        // push {r4, lr}; sub sp, #8; itt ne; addne sp, #8; popne {r4, pc}; add sp, #8; pop {r4, pc}
+        assert_eq!(own(&[0xB510, 0xB082, 0xBF1C, 0xB002, 0xBD10, 0xB002, 0xBD10]), 16);
+        // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; and what is below depends: add sp, #8; pop {r4, pc}
+        let depends = &[0xB510, 0xBF0C, 0xB082, 0xB084, 0xB002, 0xBD10];
+        assert!(only_unknown(depends).contains("returns with something"));
+    }
+
+    #[test]
+    fn a_comparison_in_a_block_may_end_what_it_executes() {
+        // push {r4, lr}; itt eq; cmpeq r0, #0; popeq {r4, pc}; pop {r4, pc}
+        assert_eq!(own(&[0xB510, 0xBF04, 0x2800, 0xBD10, 0xBD10]), 8);
+        // The same, and what returns stands at the end: it may not be executed.
+        let walked = walked(&[("f", &[0xB510, 0xBF04, 0x2800, 0xBD10])]);
+        assert_eq!(walked.unknown.values().collect::<Vec<_>>(), ["runs off its end"]);
     }
 
     #[test]
