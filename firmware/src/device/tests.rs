@@ -241,3 +241,48 @@ fn rows_that_are_no_finite_numbers_are_a_fault_and_no_stimulus() {
         }
     }
 }
+
+/// What is asked for while nothing is armed is kept for whoever arms until it is older than its limit, to the tick.
+#[test]
+fn requests_of_before_arming_are_kept_until_they_are_too_old() {
+    let limits = Limits { readings_ms: 5_000, ..Limits::SURFACE.within_scale(&SCALE) };
+    let limits = Limits { stuck_ms: 100_000, ..limits };
+    let stopped = || {
+        let mut bench = Bench::armed(limits);
+        bench.order(Order::Stop);
+        bench.read();
+        bench.order(Order::Acknowledge(Fault::Stopped));
+        bench
+    };
+    let armed_after = |bench: &mut Bench, ticks| {
+        (0..ticks).for_each(|_| {
+            bench.tick();
+        });
+        bench.order(Order::Arm);
+        assert_eq!(bench.state(), State::Armed);
+    };
+    for (ticks, kept) in [(0, true), (500, true), (999, true), (1_000, false), (1_500, false)] {
+        let mut bench = stopped();
+        bench.order(Order::Drive(drive()));
+        armed_after(&mut bench, ticks);
+        assert_eq!(bench.device.drive.value == drive(), kept, "a drive after {ticks} ticks");
+    }
+    for (ticks, kept) in [(0, true), (25, true), (49, true), (50, false), (200, false)] {
+        let mut bench = stopped();
+        bench.row(row());
+        bench.tick();
+        armed_after(&mut bench, ticks);
+        let nothing = Aged::new(super::NO_DEMAND).value;
+        assert_eq!(bench.device.demand.value != nothing, kept, "a row after {ticks} ticks");
+    }
+}
+
+/// A muscle that has lost a bit is a fault, whatever else is right.
+#[test]
+fn a_muscle_that_lost_a_bit_is_a_fault() {
+    let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
+    assert!(bench.tick());
+    bench.device.ends.muscles[0].as_mut().expect("a muscle").lose_a_bit();
+    assert!(!bench.tick());
+    assert_eq!(bench.state(), State::Latched(Fault::Checksum));
+}

@@ -13,6 +13,13 @@ const ELECTRODE: Electrode =
 const INPUTS: RowInputs =
     RowInputs { activation: 0.5, path_length: 0.16, stimulation_frequency: 40.0 };
 
+impl Driven {
+    /// Memory loses a bit of it.
+    pub(crate) fn lose_a_bit(&mut self) {
+        self.checksums[0] ^= 1;
+    }
+}
+
 fn driven() -> Driven {
     let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
     Driven::build(&upload, TimeStep::MILLISECOND).expect("a muscle")

@@ -218,6 +218,11 @@ fn a_demand_that_is_equal_to_its_limit_is_allowed() {
     // 10 mA for 200 us, both phases, 25 times a second: 1 mA r.m.s. to the last digit.
     let slow = Stimulus { frequency_tenths_pps: 250, ..base };
     assert_eq!(state(Limits { rms_ua: 1_000, ..tight }, slow).0, State::Armed);
+    // A recharge phase that is four times weaker, and longer, adds a quarter: 0.79057 mA.
+    let weak = Stimulus { recovery: 4, ..slow };
+    assert_eq!(state(Limits { rms_ua: 791, ..tight }, weak).0, State::Armed);
+    let (refused, _) = state(Limits { rms_ua: 790, ..tight }, weak);
+    assert_eq!(refused, State::Latched(Fault::RootMeanSquare));
     for (limits, stimulus, fault) in [
         (tight, Stimulus { amplitude_ua: 10_001, ..base }, Fault::Amplitude),
         (tight, Stimulus { width_us: 201, ..base }, Fault::Width),
