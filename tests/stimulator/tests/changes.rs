@@ -374,3 +374,34 @@ fn what_is_wrong_is_told_before_anybody_arms() {
     assert_eq!(bench.controller.wrong(), Some(Fault::Supply));
     assert_eq!(bench.controller.state(), State::Latched(Fault::Boot));
 }
+
+/// Charge stimulates: a pulse that becomes four times wider begins with a quarter of the counts, and rises from there.
+#[test]
+fn a_pulse_that_becomes_wider_becomes_weaker_first() {
+    let mut bench = Bench::new(Fault::Boot);
+    bench.tick();
+    bench.arm(Fault::Boot);
+    let asks = |bench: &mut Bench, width_us| {
+        bench.inject(move |_, r, _| {
+            let stimulus = Stimulus { width_us, ..stimulus(20_000) };
+            *r = Requested { stimuli: [Some(stimulus), None, None, None], ..Requested::NOTHING };
+        });
+    };
+    asks(&mut bench, 100);
+    bench.flows(800);
+    let counts = |bench: &Bench| bench.put_out.last().expect("pulses").counts;
+    assert_eq!(counts(&bench), 1638);
+    let before = bench.put_out.len();
+    asks(&mut bench, 400);
+    bench.flows(110);
+    // 2 mA of 50 mA by 4095 counts are 163.
+    let after: Vec<u16> = bench.put_out[before..].iter().map(|pulse| pulse.counts).collect();
+    assert_eq!(after[..3], [1638 / 4 + 163, 1638 / 4 + 2 * 163, 1638 / 4 + 3 * 163]);
+    // Narrower, it may stay as strong as it was.
+    bench.flows(800);
+    assert_eq!(counts(&bench), 1638);
+    let before = bench.put_out.len();
+    asks(&mut bench, 200);
+    bench.flows(60);
+    assert_eq!(bench.put_out[before].counts, 1638);
+}
