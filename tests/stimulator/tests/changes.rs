@@ -405,3 +405,32 @@ fn a_pulse_that_becomes_wider_becomes_weaker_first() {
     bench.flows(60);
     assert_eq!(bench.put_out[before].counts, 1638);
 }
+
+/// A tick that hung for 5 ms is a fault even where no pulse was due.
+#[test]
+fn a_tick_that_hung_between_pulses_is_a_fault() {
+    let mut bench = Bench::running();
+    let pulses = bench.put_out.len();
+    while bench.put_out.len() < pulses + 2 {
+        bench.tick();
+    }
+    // Both channels have had theirs: 20 ms without one follow.
+    bench.tick();
+    bench.hangs = true;
+    bench.flows(5);
+    bench.hangs = false;
+    assert_eq!(bench.put_out.len(), pulses + 2);
+    bench.tick();
+    assert_eq!(bench.controller.state(), State::Latched(Fault::Deadline));
+    // Without a plan there is nothing to be late for.
+    let mut bench = Bench::new(Fault::Boot);
+    bench.inject(|_, r, _| *r = Requested::NOTHING);
+    bench.tick();
+    bench.arm(Fault::Boot);
+    bench.flows(5);
+    bench.hangs = true;
+    bench.flows(5);
+    bench.hangs = false;
+    bench.flows(2);
+    assert_eq!(bench.controller.state(), State::Armed);
+}
