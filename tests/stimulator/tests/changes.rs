@@ -4,10 +4,11 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::NorFlash;
 use firmware::link::{Electrode, Mode, Request, RowInputs, Upload, VERSION};
 use firmware::safety::{Fault, Observed, Requested, State};
-use firmware::{Limits, RamFlash, Slots, Stimulus};
+use firmware::{Guarded, Limits, Plan, RamFlash, Schedule, Slots, Step, Stimulus};
 use stimulator_tests::bench::{Bench, LIMITS, stimulus};
 use stimulator_tests::client::ClientError;
 use stimulator_tests::device::LIMITS as BOARD;
+use stimulator_tests::electrodes::SCALE;
 use stimulator_tests::host::{Host, READINGS, arm, booted, fes, report};
 use vm_nostd::RecruitmentCurveParams;
 
@@ -433,4 +434,39 @@ fn a_tick_that_hung_between_pulses_is_a_fault() {
     bench.hangs = false;
     bench.flows(2);
     assert_eq!(bench.controller.state(), State::Armed);
+}
+
+/// Between two pulses that are due there is a step without current, for plans to be read; and a phase that is a bit
+/// longer than the longest step leaves no piece that is shorter than the shortest.
+#[test]
+fn steps_of_two_pulses_that_are_due_at_once() {
+    for width_us in [200, 500, 501, 510, 519, 520, 521, 1000] {
+        let one = Stimulus { width_us, frequency_tenths_pps: 100, ..stimulus(5_000) };
+        let plan = Plan::<4>::new(&[Some(one), Some(one), None, None], &SCALE, 50_000);
+        let mut schedule = Schedule::<4>::new();
+        schedule.follow(&Guarded::new(plan.expect("a plan")));
+        let steps: Vec<Step> = std::iter::repeat_with(|| schedule.advance()).take(24).collect();
+        let pieces = |channel: usize, counts: bool| -> Vec<u32> {
+            let of = |step: &&Step| {
+                step.output.is_some_and(|(at, phase)| at == channel && (phase.counts > 0) == counts)
+            };
+            steps.iter().filter(of).map(|step| step.duration_us).collect()
+        };
+        let width = u32::from(width_us);
+        for channel in [0, 1] {
+            // Both phases: each in one piece, or in two.
+            let phase = match width {
+                ..=500 => vec![width],
+                501..=520 => vec![width - 20, 20],
+                _ => vec![500, width - 500],
+            };
+            assert_eq!(pieces(channel, true), [phase.clone(), phase].concat(), "{width_us}");
+            assert_eq!(pieces(channel, false), [20, 30, 20, 20], "{width_us}");
+        }
+        let last = steps.iter().rposition(|step| step.output.is_some_and(|(at, _)| at == 0));
+        let next = steps.iter().position(|step| step.output.is_some_and(|(at, _)| at == 1));
+        let (last, next) = (last.expect("a pulse"), next.expect("another"));
+        let between: Vec<Step> = steps[last + 1..next].to_vec();
+        assert_eq!(between, [Step { output: None, duration_us: 20 }]);
+    }
 }
