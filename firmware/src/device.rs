@@ -32,7 +32,7 @@ pub const MUSCLES: usize = 2;
 /// Fibre types of each muscle.
 pub const TYPES: usize = 2;
 
-/// Rows that can wait for their tick, and their outputs for the link.
+/// Places for rows that wait for their tick, and for their outputs; a queue keeps one of them free.
 const WAITING: usize = 64;
 
 /// The muscles of all places. There are two that tick and link give each other, for a muscle is too large for a queue,
@@ -294,14 +294,16 @@ impl<'q> Device<'q> {
         let drive = self.drive.value.get()?;
         let demands = self.demand.value.get()?;
         let mut requested = Requested { stimuli: *drive, ..Requested::NOTHING };
-        if drive.iter().any(Option::is_some) {
+        if drive.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0) {
             requested.drive_age_us = self.drive.age_us;
         }
         for demand in demands {
             match *demand {
                 Demand::Nothing => (),
                 Demand::Pulses(channel, stimulus) => {
-                    requested.row_age_us = self.demand.age_us;
+                    if stimulus.amplitude_ua > 0 {
+                        requested.row_age_us = self.demand.age_us;
+                    }
                     // No drive has a channel of an electrode.
                     *requested.stimuli.get_mut(channel)? = Some(stimulus);
                 }

@@ -54,7 +54,7 @@ pub(crate) struct Driven {
 }
 
 impl Driven {
-    /// Builds a muscle at rest on the middle of its path, or refuses with field, value and limit.
+    /// Builds a muscle at rest on [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path), or refuses with field, value and limit.
     pub(crate) fn build(upload: &Upload, step: TimeStep) -> Result<Self, Refusal<'static>> {
         let electrode =
             upload.electrode.map(|electrode| checked(upload.mode, electrode)).transpose()?;

@@ -39,7 +39,7 @@ pub enum Fault {
     Deadline,
     /// The watchdog had to restart the controller.
     Watchdog,
-    /// State or parameters are not what the last tick left.
+    /// Memory has lost a bit: of state, parameters, limits, scale, rows, drives or plans.
     Checksum,
     /// The output stage did not answer.
     Output,

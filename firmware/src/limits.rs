@@ -38,7 +38,7 @@ pub struct Limits {
     pub rest_ms: u32,
     /// Longest silence of the host, ms; a tick or more.
     pub silence_ms: u32,
-    /// Greatest age of a sensor's reading, ms; a tick or more.
+    /// Greatest age of a reading of the path, ms; a tick or more. An older one counts as missing, which is a fault.
     pub readings_ms: u32,
     /// Greatest age of a row whose stimulus is put out, ms; a tick or more.
     pub rows_ms: u32,

@@ -62,9 +62,9 @@ impl Requested {
 pub enum State {
     /// Off because of the fault, until somebody names it.
     Latched(Fault),
-    /// Off; the fault has been named, and arming may follow within so many ms.
+    /// Off; the fault has been named, and arming may follow.
     Acknowledged {
-        /// µs that are left.
+        /// Time that is left for arming, µs.
         left_us: u32,
         /// The fault that comes back when they are over.
         fault: Fault,

@@ -1,4 +1,4 @@
-//! Several muscles, of any modes, stepped by one call.
+//! Several muscles, continuous or FES, stepped by one call.
 
 use crate::muscle::{ContinuousMuscle, FesMuscle, Input, Output};
 use crate::recruitment::{IntramuscularFes, NaturalContinuous};

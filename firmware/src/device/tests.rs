@@ -286,3 +286,13 @@ fn a_muscle_that_lost_a_bit_is_a_fault() {
     assert!(!bench.tick());
     assert_eq!(bench.state(), State::Latched(Fault::Checksum));
 }
+
+/// Pulses of nothing need nobody to ask for them again.
+#[test]
+fn a_drive_of_no_current_does_not_grow_old() {
+    let limits = Limits { readings_ms: 5_000, ..Limits::SURFACE.within_scale(&SCALE) };
+    let mut bench = Bench::armed(limits);
+    let stimuli = [Some(Stimulus { amplitude_ua: 0, ..STIMULUS }), None, None, None];
+    bench.order(Order::Drive(Guarded::new(stimuli)));
+    assert!((0..2_000).all(|_| bench.tick()));
+}

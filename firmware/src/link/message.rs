@@ -33,12 +33,13 @@ pub enum Request {
         /// What goes there.
         upload: Upload,
     },
-    /// All muscles at rest on these path lengths (m), by themselves in the middle of their range; rows are counted
+    /// All muscles at rest on these path lengths (m), by themselves midway between the shortest path and the
+    /// longest that morphometry says; rows are counted
     /// from 0 again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
     /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. What a row
-    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault, or a stop,
-    /// while armed takes with it the rows that have not had their tick.
+    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault
+    /// while armed, or a stop, takes with it the rows that have not had their tick.
     Rows {
         /// Number of the first.
         first: u32,
@@ -48,13 +49,14 @@ pub enum Request {
     /// Stimuli of the channels that no electrode of a muscle has. They are put out for
     /// [`Limits::drives_ms`](crate::Limits::drives_ms) at most: hosts repeat them.
     Drive([Option<Stimulus>; CHANNELS]),
-    /// What sensors read, until something else comes.
+    /// What sensors read. The path counts as missing once it is older than
+    /// [`Limits::readings_ms`](crate::Limits::readings_ms).
     Readings(Readings),
     /// First step of arming: the fault that was seen.
     Acknowledge(Fault),
     /// Second step of arming.
     Arm,
-    /// Everything off, latched as [`Fault::Stopped`].
+    /// Everything off, latched as [`Fault::Stopped`] unless another fault is latched already.
     Stop,
     /// Answer: [`Answer::Report`].
     Report,

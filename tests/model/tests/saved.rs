@@ -9,6 +9,8 @@ use vm_nostd::{
 };
 
 type Params = MuscleParams<2>;
+/// Of a parameter.
+type Change = fn(&mut Params);
 
 fn built<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> Muscle<S, R, 2> {
     model_tests::muscles::built(params, step)
@@ -53,7 +55,7 @@ fn only_its_own_muscle_takes_a_state<S: Scalar, R: Mode<S>>() {
     let words = saved::<S, R>(&built(&MUSCLE, ms));
     // Built again, from the same parameters, it is the same muscle.
     assert!(built::<S, R>(&MUSCLE, ms).restore(words.iter().copied()).is_ok());
-    let changes: [(&str, fn(&mut Params)); 7] = [
+    let changes: [(&str, Change); 7] = [
         ("mass", |p| p.mass *= 1.001),
         ("fascicle", |p| p.fascicle_length *= 1.001),
         ("tendon", |p| p.tendon_length *= 1.001),
