@@ -30,6 +30,8 @@ pub struct Electrodes {
     pub words: u32,
     /// Until all were low once, several channels may be connected.
     pub starting: bool,
+    /// Words that the converter will not take.
+    pub missed_words: u32,
     /// Converter or pins that do not answer any more.
     pub broken_converter: bool,
     /// See `broken_converter`.
@@ -108,6 +110,10 @@ impl SpiDevice for Converter {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut electrodes = self.0.borrow_mut();
         if electrodes.broken_converter {
+            return Err(ErrorKind::Other);
+        }
+        if electrodes.missed_words > 0 {
+            electrodes.missed_words -= 1;
             return Err(ErrorKind::Other);
         }
         for operation in operations {

@@ -156,31 +156,38 @@ fn a_fault_of_a_moment_between_the_two_steps_of_arming_is_not_missed() {
     assert!(matches!(supply, State::Acknowledged { fault: Fault::Boot, .. }), "{supply:?}");
 }
 
-/// The converter misses one word of a pulse, and answers again.
+/// The converter misses one word of a pulse, and takes the next.
 #[test]
 fn one_word_that_the_converter_does_not_take_is_reported() {
     for word in 0..6 {
         let mut bench = Bench::running();
         bench.until_current();
         (0..word).for_each(|_| bench.run_out());
-        bench.electrodes.borrow_mut().broken_converter = true;
-        // The next step that speaks to it.
-        let mut steps = 0;
-        while bench.controller.state() == State::Armed && steps < 200 {
-            if steps == 1 {
-                bench.electrodes.borrow_mut().broken_converter = false;
-            }
-            if bench.timer >= bench.tick * 1000 {
-                bench.control();
-            }
-            bench.run_out();
-            steps += 1;
-        }
-        // Between pulses nothing is said to it.
-        if word < 5 {
-            assert_eq!(bench.controller.state(), State::Latched(Fault::Output), "word {word}");
-        }
+        bench.electrodes.borrow_mut().missed_words = 1;
+        bench.flows(30);
+        assert_eq!(bench.electrodes.borrow().missed_words, 0);
+        assert_eq!(bench.controller.state(), State::Latched(Fault::Output), "word {word}");
     }
+}
+
+/// A plan that the pulse timer had no time to read before a stop is not read after it.
+#[test]
+fn a_plan_that_waits_when_everything_stops_is_thrown_away() {
+    let mut bench = Bench::new(Fault::Boot);
+    bench.inject(|_, r, _| *r = Requested::NOTHING);
+    bench.tick();
+    bench.arm(Fault::Boot);
+    bench.flows(5);
+    bench.inject_nothing();
+    bench.control();
+    bench.controller.fail(Fault::Stopped);
+    bench.pulses.attend();
+    bench.inject(|_, r, _| *r = Requested::NOTHING);
+    bench.controller.acknowledge(Fault::Stopped).expect("its name");
+    bench.controller.arm().expect("nothing is wrong");
+    bench.flows(60);
+    assert_eq!(bench.controller.state(), State::Armed);
+    assert_eq!(bench.put_out, []);
 }
 
 /// As much as a limit says is allowed; the next step is not.

@@ -175,6 +175,35 @@ fn whatever_interrupts_whatever_a_fault_ends_all_current_and_all_plans() {
     assert!(all > 5_000);
 }
 
+/// A drive of before the second step of arming, the same as before the stop or another one: it flows, whatever
+/// interrupts the tick that arms.
+fn armed_with_a_drive(pulse_interrupts: u32) -> Result<(), String> {
+    let levels = running(true, choose(PLACES));
+    levels.ask(&Request::Stop);
+    levels.ask(&Request::Readings(READINGS));
+    levels.ask(&Request::Acknowledge(Fault::Stopped));
+    let (amplitude_ua, counts) = [(10_000, BEFORE), (20_000, AFTER)][usize::from(choose(2))];
+    levels.ask(&drive(amplitude_ua));
+    levels.flowed();
+    levels.send(&Request::Arm);
+    levels.explore(pulse_interrupts, 0);
+    levels.pass(2);
+    levels.explore(0, 0);
+    levels.pass(13);
+    let flowed = levels.flowed();
+    if !flowed.contains(&counts) || flowed.iter().any(|other| *other != counts) {
+        return Err(format!("{flowed:?}, not {counts}"));
+    }
+    levels.problem().map_or(Ok(()), Err)
+}
+
+#[test]
+fn whatever_interrupts_the_tick_that_arms_what_was_asked_for_flows() {
+    let runs = explore(|| armed_with_a_drive(interrupts() + 1)).expect("pulses");
+    println!("{runs} interleavings of arming");
+    assert!(runs > 500);
+}
+
 /// The explorer finds what there is to find.
 #[test]
 fn a_tick_that_does_not_call_for_the_pulse_timer_is_found() {
