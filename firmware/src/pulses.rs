@@ -11,6 +11,9 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use heapless::spsc::Consumer;
 
+#[cfg(test)]
+mod tests;
+
 /// Puts pulses out, as long as the tick keeps allowing it.
 pub struct Pulses<'q, D, P> {
     stage: OutputStage<D, P, CHANNELS>,

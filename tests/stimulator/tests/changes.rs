@@ -170,26 +170,6 @@ fn one_word_that_the_converter_does_not_take_is_reported() {
     }
 }
 
-/// A plan that the pulse timer had no time to read before a stop is not read after it.
-#[test]
-fn a_plan_that_waits_when_everything_stops_is_thrown_away() {
-    let mut bench = Bench::new(Fault::Boot);
-    bench.inject(|_, r, _| *r = Requested::NOTHING);
-    bench.tick();
-    bench.arm(Fault::Boot);
-    bench.flows(5);
-    bench.inject_nothing();
-    bench.control();
-    bench.controller.fail(Fault::Stopped);
-    bench.pulses.attend();
-    bench.inject(|_, r, _| *r = Requested::NOTHING);
-    bench.controller.acknowledge(Fault::Stopped).expect("its name");
-    bench.controller.arm().expect("nothing is wrong");
-    bench.flows(60);
-    assert_eq!(bench.controller.state(), State::Armed);
-    assert_eq!(bench.put_out, []);
-}
-
 /// As much as a limit says is allowed; the next step is not.
 #[test]
 fn a_demand_that_is_equal_to_its_limit_is_allowed() {

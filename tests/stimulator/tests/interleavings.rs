@@ -179,9 +179,12 @@ fn whatever_interrupts_whatever_a_fault_ends_all_current_and_all_plans() {
 /// interrupts the tick that arms.
 fn armed_with_a_drive(pulse_interrupts: u32) -> Result<(), String> {
     let levels = running(true, choose(PLACES));
-    levels.ask(&Request::Stop);
+    let no_supply = Request::Readings(Readings { supply_mv: 1, ..READINGS });
+    let stops = [(Request::Stop, Fault::Stopped), (no_supply, Fault::Supply)];
+    let (stop, fault) = &stops[usize::from(choose(2))];
+    levels.ask(stop);
     levels.ask(&Request::Readings(READINGS));
-    levels.ask(&Request::Acknowledge(Fault::Stopped));
+    levels.ask(&Request::Acknowledge(*fault));
     let (amplitude_ua, counts) = [(10_000, BEFORE), (20_000, AFTER)][usize::from(choose(2))];
     levels.ask(&drive(amplitude_ua));
     levels.flowed();
