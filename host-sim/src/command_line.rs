@@ -3,15 +3,16 @@
 mod arm;
 mod cycles;
 mod hil;
+mod muscles;
+mod plot;
 mod stack;
 mod sweep;
 
-use crate::chart::{Chart, Panel, Point};
 use crate::engine::{self, Arithmetic};
 use crate::figures;
 use crate::golden;
 use crate::link;
-use crate::muscle_file;
+use crate::muscles::find;
 use crate::readme;
 use crate::reference::{Mode, Muscle};
 use crate::report;
@@ -40,7 +41,7 @@ enum Command {
     /// (what `vm` does without a command).
     Verify(VerifyArgs),
     /// Draw a run as SVG.
-    Plot(PlotArgs),
+    Plot(plot::PlotArgs),
     /// Compare the bits of every scenario's state with the golden ones.
     Golden(GoldenArgs),
     /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
@@ -58,13 +59,15 @@ enum Command {
     Report(ReportArgs),
     /// Compare every arithmetic with the reference over a grid of muscles and inputs, or a sample.
     Sweep(sweep::SweepArgs),
+    /// List the human muscles that `--muscle` knows by name, and what is assumed of them.
+    Muscles,
     /// Compare the READMEs' measured tables with what is measured.
     Readme(ReadmeArgs),
 }
 
 #[derive(Debug, Args)]
 struct RunArgs {
-    /// The muscle, in TOML.
+    /// The muscle, in TOML, or its name in `vm muscles`.
     #[arg(long)]
     muscle: PathBuf,
     /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick.
@@ -86,19 +89,6 @@ struct VerifyArgs {
     /// Print the rows as a JSON array instead of a table.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Debug, Args)]
-struct PlotArgs {
-    /// Outputs of a run.
-    #[arg(long)]
-    run: PathBuf,
-    /// Inputs of that run, to be drawn below.
-    #[arg(long)]
-    input: Option<PathBuf>,
-    /// Where the picture goes, in SVG.
-    #[arg(long)]
-    output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -171,7 +161,7 @@ pub fn main() -> ExitCode {
     let done = match command {
         Command::Run(args) => run(&args).map(|()| true),
         Command::Verify(args) => verify_all(&args),
-        Command::Plot(args) => draw(&args).map(|()| true),
+        Command::Plot(args) => plot::run(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
         Command::Stack(args) => stack::run(&args),
@@ -180,6 +170,7 @@ pub fn main() -> ExitCode {
         Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),
+        Command::Muscles => muscles::run().map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };
     match done {
@@ -203,7 +194,7 @@ fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
 }
 
 fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
-    let muscle = muscle_file::read(&args.muscle)?.muscle;
+    let muscle = find(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
     check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
     let rows: Vec<OutputRow> = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?
@@ -304,32 +295,6 @@ fn table(report: &Report) -> Table {
     table
 }
 
-fn draw(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
-    let bytes = std::fs::read(&args.run).map_err(|e| format!("{}: {e}", args.run.display()))?;
-    let columns = &trace::OUTPUT_COLUMNS[..4];
-    let rows = trace::numbers(&bytes, &args.run, columns)?;
-    if rows.len() < 2 {
-        let problem = format!("{} rows: a plot needs at least 2", rows.len());
-        return Err(trace::cell_error(&args.run, 2, "t_s", problem).into());
-    }
-    let labels = ["force (N)", "length (L0)", "velocity (L0/s)"];
-    let panel = |y, points| Panel { y, lines: vec![(String::new(), points)] };
-    let mut panels: Vec<Panel> = labels
-        .into_iter()
-        .enumerate()
-        .map(|(index, y)| panel(y, rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect()))
-        .collect();
-    if let Some(path) = &args.input {
-        let inputs = input_lines(&trace::read_inputs(path)?);
-        panels.extend(inputs.map(|(y, points)| panel(y, points)));
-    }
-    let title = args.run.file_name().map_or(Path::new("run"), Path::new);
-    let title = title.display().to_string();
-    let svg = Chart { title: &title, x: "time (s)", panels }.draw()?;
-    trace::write_atomically(&args.output, svg.as_bytes())?;
-    Ok(())
-}
-
 fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
     if let Some(reason) = &args.reason {
         golden::bless(reason)?;
@@ -388,21 +353,4 @@ fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
         }
     }
     Ok(all_current)
-}
-
-/// The inputs over time, each with what it is.
-fn input_lines(trace: &InputTrace) -> [(&'static str, Vec<Point>); 3] {
-    let points = |value: fn(&crate::reference::Input) -> f64| {
-        trace
-            .inputs
-            .iter()
-            .enumerate()
-            .map(|(row, input)| (trace.time(row), value(input)))
-            .collect()
-    };
-    [
-        ("activation", points(|input| input.activation)),
-        ("path (m)", points(|input| input.path_length)),
-        ("stimulation (pps)", points(|input| input.stimulation_frequency)),
-    ]
 }

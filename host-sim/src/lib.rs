@@ -12,6 +12,7 @@ pub mod hil;
 pub mod link;
 pub mod metrics;
 pub mod muscle_file;
+pub mod muscles;
 pub mod output_file;
 pub mod readme;
 pub mod reference;

@@ -24,6 +24,9 @@ pub enum MuscleFileError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Neither a file nor a name that is known.
+    #[error("{}: no such file, and no muscle of that name in `vm muscles`", .0.display())]
+    Unknown(PathBuf),
     /// Not TOML, an unknown or missing key, or a value of the wrong type.
     #[error("{}: {message}", path.display())]
     Parse {

@@ -8,12 +8,14 @@
 mod elements;
 mod fatigue;
 mod muscle;
+mod pennation;
 mod recruitment;
 mod simulation;
 mod units;
 
 pub use fatigue::Fatigue;
 pub use muscle::{Elements, Fiber, FiberType, Muscle, Sag, Yielding};
+pub use pennation::Pennation;
 pub use recruitment::Mode;
 pub use simulation::{Input, Sample, Simulation, SolverError};
 pub use units::UnitSizes;

@@ -425,3 +425,40 @@ fn verify_as_json_has_the_agreed_keys_and_passes() {
         assert_eq!(row["pass"], true, "{row}");
     }
 }
+
+#[test]
+fn a_human_muscle_goes_by_its_name_where_no_such_file_is() {
+    let input = rows("0,0,0.34,0\n0.001,1,0.34,0\n0.002,1,0.34,0\n");
+    let bench = Bench::new(MUSCLE, &input);
+    let run = |muscle: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vm"));
+        command.current_dir(bench.folder.path()).args(["run", "--muscle", muscle]);
+        command.args(["--input", "in.csv", "--output", "out.csv", "--mode", "fes"]);
+        command.args(["--arithmetic", "f32"]).output().expect("vm runs")
+    };
+    assert!(run("tibialis_anterior").status.success());
+    assert!(forces(&bench)[0] > 0.0);
+
+    let unknown = run("tibialis_posteriorr");
+    let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert_eq!(unknown.status.code(), Some(2), "{message}");
+    assert!(message.contains("tibialis_posteriorr: no such file"), "{message}");
+    assert!(message.contains("vm muscles"), "{message}");
+
+    // A file of that name comes first: the deltoid cannot be so long.
+    fs::write(bench.path("tibialis_anterior"), MUSCLE).expect("a muscle file");
+    let file = run("tibialis_anterior");
+    assert_eq!(file.status.code(), Some(2), "the file is taken");
+}
+
+#[test]
+fn named_muscles_are_listed_with_what_is_assumed_of_them() {
+    let output = vm(&["muscles".as_ref()]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success());
+    let rows = text.lines().filter(|line| line.starts_with("| ")).count();
+    assert_eq!(rows, 21, "a header and twenty muscles: {text}");
+    for word in ["guess", "Edgerton", "CC BY 3.0", "L_mt_max", "pennation"] {
+        assert!(text.contains(word), "no \"{word}\" in: {text}");
+    }
+}

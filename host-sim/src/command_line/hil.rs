@@ -3,7 +3,7 @@
 use super::{ModeName, print};
 use crate::engine;
 use crate::hil::{self, Client, Emulated, HilError, Line, Played};
-use crate::muscle_file;
+use crate::muscles::find;
 use crate::reference::{Mode, Muscle};
 use crate::trace::{self, InputTrace, OutputRow};
 use clap::Args;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct HilArgs {
-    /// The muscle, in TOML.
+    /// The muscle, in TOML, or its name in `vm muscles`.
     #[arg(long)]
     muscle: PathBuf,
     /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick of the device.
@@ -34,7 +34,7 @@ pub struct HilArgs {
 }
 
 pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
-    let muscle = muscle_file::read(&args.muscle)?.muscle;
+    let muscle = find(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
     super::check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
     let mode = args.mode.into();

@@ -1,0 +1,63 @@
+//! `vm plot`: a run as SVG.
+
+use crate::chart::{Chart, Panel, Point};
+use crate::trace::{self, InputTrace};
+use clap::Args;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct PlotArgs {
+    /// Outputs of a run.
+    #[arg(long)]
+    run: PathBuf,
+    /// Inputs of that run, to be drawn below.
+    #[arg(long)]
+    input: Option<PathBuf>,
+    /// Where the picture goes, in SVG.
+    #[arg(long)]
+    output: PathBuf,
+}
+
+pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
+    let bytes = std::fs::read(&args.run).map_err(|e| format!("{}: {e}", args.run.display()))?;
+    let columns = &trace::OUTPUT_COLUMNS[..4];
+    let rows = trace::numbers(&bytes, &args.run, columns)?;
+    if rows.len() < 2 {
+        let problem = format!("{} rows: a plot needs at least 2", rows.len());
+        return Err(trace::cell_error(&args.run, 2, "t_s", problem).into());
+    }
+    let labels = ["force (N)", "length (L0)", "velocity (L0/s)"];
+    let panel = |y, points| Panel { y, lines: vec![(String::new(), points)] };
+    let mut panels: Vec<Panel> = labels
+        .into_iter()
+        .enumerate()
+        .map(|(index, y)| panel(y, rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect()))
+        .collect();
+    if let Some(path) = &args.input {
+        let inputs = input_lines(&trace::read_inputs(path)?);
+        panels.extend(inputs.map(|(y, points)| panel(y, points)));
+    }
+    let title = args.run.file_name().map_or(Path::new("run"), Path::new);
+    let title = title.display().to_string();
+    let svg = Chart { title: &title, x: "time (s)", panels }.draw()?;
+    trace::write_atomically(&args.output, svg.as_bytes())?;
+    Ok(())
+}
+
+/// The inputs over time, each with what it is.
+fn input_lines(trace: &InputTrace) -> [(&'static str, Vec<Point>); 3] {
+    let points = |value: fn(&crate::reference::Input) -> f64| {
+        trace
+            .inputs
+            .iter()
+            .enumerate()
+            .map(|(row, input)| (trace.time(row), value(input)))
+            .collect()
+    };
+    [
+        ("activation", points(|input| input.activation)),
+        ("path (m)", points(|input| input.path_length)),
+        ("stimulation (pps)", points(|input| input.stimulation_frequency)),
+    ]
+}

@@ -1,0 +1,205 @@
+//! Human muscles by name: published morphometry, and what had to be assumed to make muscles of it.
+//!
+//! Sources: gait2392 (Delp et al., IEEE Trans. Biomed. Eng. 37 (1990) 757-767; Yamaguchi & Zajac 1989;
+//! Anderson & Pandy 1999) and arm26 (after Holzbaur, Murray & Delp, Ann. Biomed. Eng. 33 (2005) 829-840), both
+//! CC BY 3.0 of the OpenSim project. Slow fractions: Edgerton, Smith & Simpson, Histochem. J. 7 (1975) 259-266.
+
+use crate::coefficients;
+use crate::muscle_file::{self, MuscleFileError, NamedMuscle};
+use crate::reference::{Muscle, Pennation};
+use serde::Deserialize;
+use std::path::Path;
+
+const TABLE: &str = include_str!("../data/human_muscles.csv");
+
+/// The published set whose elements and fibre types all of them have.
+pub const SET: &str = "human-vm4";
+
+/// U_r of all of them: the authors' default.
+const RECRUITMENT_SATURATION: f64 = 0.8;
+
+/// What the table does not say of a muscle, and is the same for all.
+pub const ASSUMPTIONS: [&str; 5] = [
+    "L_se0 is the slack length of the source over LrT (0.964): the tendon's length at F0",
+    "L_mt_max lets the passive fascicles reach max_fascicle_length_l0: 1.4 is a guess between 1.3 and 1.5",
+    "a slow fraction marked `guess` has no source; the rest is fast",
+    "mass follows from F0, specific tension and density; the sources scale some F0 up from anatomy",
+    "fascicles pull in line with the tendon (no pennation)",
+];
+
+/// A row of `data/human_muscles.csv`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HumanMuscle {
+    /// Its name, as `--muscle` takes it.
+    #[serde(rename = "muscle")]
+    pub name: String,
+    /// F0 along the fascicles, N.
+    pub max_isometric_force_n: f64,
+    /// L_ce0, cm.
+    pub fascicle_length_cm: f64,
+    /// Length of the tendon as it takes up force, cm.
+    pub tendon_slack_length_cm: f64,
+    /// Angle between fascicles and tendon at optimal length, degrees.
+    pub pennation_deg: f64,
+    /// Model that the morphometry is from.
+    pub source: String,
+    /// Its licence.
+    pub licence: String,
+    /// Share of slow fibres in the cross section.
+    pub slow_fraction: f64,
+    /// Where that share is from, or `guess`.
+    pub slow_source: String,
+    /// L_max that is assumed, L_ce0.
+    pub max_fascicle_length_l0: f64,
+}
+
+impl HumanMuscle {
+    /// The muscle, in line with its tendon.
+    pub fn muscle(&self) -> Muscle {
+        let elements = coefficients::elements(SET).expect("a published set");
+        let fiber = |name: &str, fraction| {
+            coefficients::fiber(&format!("{SET}/{name}"), fraction).expect("a published type")
+        };
+        let fascicle = self.fascicle_length_cm * 1e-2;
+        let mut muscle = Muscle {
+            mass: self.max_isometric_force_n * elements.density * fascicle
+                / elements.specific_tension,
+            L_ce0: fascicle,
+            L_se0: self.tendon_slack_length_cm * 1e-2 / elements.LrT,
+            L_mt_max: 0.0,
+            U_r: RECRUITMENT_SATURATION,
+            elements,
+            fibers: vec![
+                fiber("slow", self.slow_fraction),
+                fiber("fast", 1.0 - self.slow_fraction),
+            ],
+            fatigue: None,
+        };
+        // L_max is linear in L_mt_max.
+        let at_no_path = muscle.maximum_fascicle_length();
+        muscle.L_mt_max = (self.max_fascicle_length_l0 - at_no_path) * fascicle;
+        muscle
+    }
+
+    /// What it costs to leave pennation out, of steady force at full activation.
+    pub fn pennation_cost(&self) -> PennationCost {
+        let muscle = self.muscle();
+        let pennation = Pennation::new(self.pennation_deg.to_radians());
+        let cosine = pennation.cosine(1.0);
+        let shift = muscle.L_ce0 * (1.0 - cosine);
+        let mut cost = PennationCost { as_it_stands: 0.0, made_up_for: 0.0 };
+        for percent in 70..=130 {
+            let length = f64::from(percent) * 1e-2;
+            let path = muscle.L_se0 + length * muscle.L_ce0 * pennation.cosine(length);
+            let pennate = pennation.isometric_force(&muscle, path);
+            let in_line = |path| Pennation::new(0.0).isometric_force(&muscle, path);
+            let worse = |worst: f64, force: f64| worst.max(100.0 * (force - pennate).abs());
+            cost.as_it_stands = worse(cost.as_it_stands, in_line(path));
+            cost.made_up_for = worse(cost.made_up_for, cosine * in_line(path + shift));
+        }
+        cost
+    }
+}
+
+/// Largest error of the steady force at full activation, % of F0, over fascicles of 0.7 to 1.3 L_ce0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PennationCost {
+    /// On the same path with the same F0.
+    pub as_it_stands: f64,
+    /// With F0 times the cosine of the angle and the path longer by what the fascicles' projection lacks at
+    /// L_ce0: what a fit of force and path would find.
+    pub made_up_for: f64,
+}
+
+/// All muscles that have a name, in the order of the table.
+pub fn all() -> Vec<HumanMuscle> {
+    csv::Reader::from_reader(TABLE.as_bytes())
+        .deserialize()
+        .map(|row| row.expect("an even row in the built-in table"))
+        .collect()
+}
+
+/// A muscle from its file or, where there is none of that name, by its name in the table.
+pub fn find(path: &Path) -> Result<NamedMuscle, MuscleFileError> {
+    if path.exists() {
+        return muscle_file::read(path);
+    }
+    match all().into_iter().find(|human| path == Path::new(&human.name)) {
+        Some(human) => Ok(NamedMuscle { muscle: human.muscle(), name: human.name }),
+        None => Err(MuscleFileError::Unknown(path.to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{self, Arithmetic};
+    use crate::metrics::{ForceError, forces};
+    use crate::reference::{Input, Mode};
+    use crate::trace::InputTrace;
+
+    #[test]
+    fn every_muscle_is_what_its_row_says() {
+        let all = all();
+        assert_eq!(all.len(), 20);
+        for human in &all {
+            let muscle = human.muscle();
+            let name = &human.name;
+            assert!((muscle.f0() / human.max_isometric_force_n - 1.0).abs() < 1e-12, "{name}");
+            let longest = muscle.maximum_fascicle_length();
+            assert!((longest - human.max_fascicle_length_l0).abs() < 1e-12, "{name}: {longest}");
+            let slack = muscle.L_se0 * muscle.elements.LrT * 100.0;
+            assert!((slack - human.tendon_slack_length_cm).abs() < 1e-12, "{name}: {slack}");
+            assert_eq!(human.licence, "CC BY 3.0", "{name}");
+        }
+    }
+
+    /// A second from rest to full activation on a path at which the fascicles are near L_ce0.
+    fn second(muscle: &Muscle) -> InputTrace {
+        let input = |tick: usize| Input {
+            activation: if tick < 100 { 0.0 } else { 1.0 },
+            path_length: (muscle.L_ce0 + muscle.L_se0).min(muscle.L_mt_max),
+            stimulation_frequency: 40.0,
+        };
+        InputTrace { start: 0.0, time_step: 1e-3, inputs: (0..=1000).map(input).collect() }
+    }
+
+    fn builds(arithmetic: Arithmetic, most: f64) {
+        for human in all() {
+            let (name, muscle) = (&human.name, human.muscle());
+            let run = |arithmetic| {
+                let rows = engine::run(&muscle, Mode::Fes, arithmetic, &second(&muscle));
+                rows.unwrap_or_else(|error| panic!("{name} in {}: {error}", arithmetic.name()))
+            };
+            let rows = run(arithmetic);
+            let flags = rows.iter().fold(vm_nostd::Status::empty(), |all, row| all | row.1);
+            assert_eq!(engine::status_names(flags), "ok", "{name}");
+            let found = forces(rows.iter().map(|row| &row.0));
+            let expected = forces(run(Arithmetic::Reference).iter().map(|row| &row.0));
+            assert!(expected[1000] > 0.7 * muscle.f0(), "{name}: {} N", expected[1000]);
+            let error = ForceError::between(&found, &expected, muscle.f0());
+            assert!(error.max < most, "{name}: {} % of F0", error.max);
+        }
+    }
+
+    #[test]
+    fn every_muscle_builds_in_f32_and_follows_the_reference() {
+        builds(Arithmetic::F32, 0.1);
+    }
+
+    #[test]
+    fn what_pennation_costs_grows_with_the_angle() {
+        let cost = |name: &str| {
+            let human = all().into_iter().find(|human| human.name == name).expect("a muscle");
+            human.pennation_cost()
+        };
+        let brachialis = cost("brachialis");
+        assert_eq!(brachialis, PennationCost { as_it_stands: 0.0, made_up_for: 0.0 });
+        let (lateral, soleus) = (cost("gastrocnemius_lateral"), cost("soleus"));
+        assert!(lateral.as_it_stands < soleus.as_it_stands, "{lateral:?} {soleus:?}");
+        assert!(soleus.made_up_for < soleus.as_it_stands, "{soleus:?}");
+        // At L_ce0 alone the tendon feels F0 cos 25 degrees: 9.4 % of F0 less.
+        assert!((9.0..40.0).contains(&soleus.as_it_stands), "{soleus:?}");
+    }
+}

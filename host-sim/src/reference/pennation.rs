@@ -1,0 +1,55 @@
+//! Pennation, which Virtual Muscle has not: what it would change of steady force.
+//!
+//! Fascicles of a muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): they keep
+//! their height L sin α, so that sin α = sin α0/L, α0 being the angle at L_ce0; the tendon feels cos α of them.
+
+use super::elements as element;
+use super::muscle::Muscle;
+
+/// An angle α0 between fascicles at L_ce0 and tendon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pennation {
+    sine: f64,
+}
+
+impl Pennation {
+    /// From α0, rad, 0 up to but not π/2.
+    pub fn new(angle: f64) -> Self {
+        Self { sine: angle.sin() }
+    }
+
+    /// cos α of fascicles of length `l`, L_ce0; 0 where they are no longer than the muscle is thick.
+    pub fn cosine(self, l: f64) -> f64 {
+        (1.0 - (self.sine / l).powi(2)).max(0.0).sqrt()
+    }
+
+    /// Steady tendon force, in F0, of a fully activated muscle on a path (m): Af = 1, V = 0.
+    pub fn isometric_force(self, muscle: &Muscle, path: f64) -> f64 {
+        let e = &muscle.elements;
+        let l_max = muscle.maximum_fascicle_length();
+        let tendon = |l: f64| {
+            let fascicles = l * muscle.L_ce0 * self.cosine(l);
+            element::tendon(e, (path - fascicles) / muscle.L_se0)
+        };
+        let fascicles = |l: f64| {
+            let filaments: f64 = muscle
+                .fibers
+                .iter()
+                .map(|fiber| fiber.fraction * element::force_length(&fiber.fiber_type, l))
+                .sum();
+            let passive = element::parallel_elastic(e, l, l_max, 0.0) + element::compression(e, l);
+            self.cosine(l) * (filaments + passive).max(0.0)
+        };
+        // From flat fascicles, which pull at nothing, to where no path is left for the tendon.
+        let (mut low, mut high) = (self.sine.max(1e-3), path / muscle.L_ce0 + 1.0);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if tendon(middle) > fascicles(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        tendon(low)
+    }
+}
