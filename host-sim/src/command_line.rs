@@ -2,6 +2,7 @@
 
 mod arm;
 mod cycles;
+mod fit;
 mod hil;
 mod muscles;
 mod plot;
@@ -59,6 +60,8 @@ enum Command {
     Report(ReportArgs),
     /// Compare every arithmetic with the reference over a grid of muscles and inputs, or a sample.
     Sweep(sweep::SweepArgs),
+    /// Fit a muscle to recordings, and say what they can and cannot tell of it.
+    Fit(fit::FitArgs),
     /// List the human muscles that `--muscle` knows by name, and what is assumed of them.
     Muscles,
     /// Compare the READMEs' measured tables with what is measured.
@@ -170,6 +173,7 @@ pub fn main() -> ExitCode {
         Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),
+        Command::Fit(args) => fit::run(&args).map(|()| true),
         Command::Muscles => muscles::run().map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };

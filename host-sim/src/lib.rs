@@ -7,6 +7,7 @@ pub mod command_line;
 pub mod cycles;
 pub mod engine;
 pub mod figures;
+pub mod fit;
 pub mod golden;
 pub mod hil;
 pub mod link;

@@ -82,6 +82,26 @@ impl HumanMuscle {
         muscle
     }
 
+    /// The muscle as a file.
+    pub fn file(&self) -> String {
+        let muscle = self.muscle();
+        let fiber = |name: &str, fraction: f64| {
+            format!("\n[[fiber]]\npreset = \"{SET}/{name}\"\nfraction = {fraction}\n")
+        };
+        format!(
+            "name = \"{}\"\nmax_isometric_force_n = {}\nfascicle_length_cm = {}\n\
+             tendon_length_cm = {}\nmax_path_length_cm = {}\n\
+             recruitment_saturation = {RECRUITMENT_SATURATION}\ncoefficients = \"{SET}\"\n{}{}",
+            self.name,
+            self.max_isometric_force_n,
+            self.fascicle_length_cm,
+            muscle.L_se0 * 1e2,
+            muscle.L_mt_max * 1e2,
+            fiber("slow", muscle.fibers[0].fraction),
+            fiber("fast", muscle.fibers[1].fraction),
+        )
+    }
+
     /// What it costs to leave pennation out, of steady force at full activation.
     pub fn pennation_cost(&self) -> PennationCost {
         let muscle = self.muscle();
@@ -120,15 +140,22 @@ pub fn all() -> Vec<HumanMuscle> {
         .collect()
 }
 
+/// The text of a muscle's file or, where there is none of that name, of the muscle of that name in the table.
+pub fn text(path: &Path) -> Result<String, MuscleFileError> {
+    let human = all().into_iter().find(|human| path == Path::new(&human.name));
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(text),
+        Err(_) if !path.exists() => match human {
+            Some(human) => Ok(human.file()),
+            None => Err(MuscleFileError::Unknown(path.to_owned())),
+        },
+        Err(source) => Err(MuscleFileError::Read { path: path.to_owned(), source }),
+    }
+}
+
 /// A muscle from its file or, where there is none of that name, by its name in the table.
 pub fn find(path: &Path) -> Result<NamedMuscle, MuscleFileError> {
-    if path.exists() {
-        return muscle_file::read(path);
-    }
-    match all().into_iter().find(|human| path == Path::new(&human.name)) {
-        Some(human) => Ok(NamedMuscle { muscle: human.muscle(), name: human.name }),
-        None => Err(MuscleFileError::Unknown(path.to_owned())),
-    }
+    muscle_file::parse(&text(path)?, path)
 }
 
 #[cfg(test)]
@@ -152,6 +179,15 @@ mod tests {
             let slack = muscle.L_se0 * muscle.elements.LrT * 100.0;
             assert!((slack - human.tendon_slack_length_cm).abs() < 1e-12, "{name}: {slack}");
             assert_eq!(human.licence, "CC BY 3.0", "{name}");
+            let file = muscle_file::parse(&human.file(), Path::new(name)).expect("a muscle").muscle;
+            for (one, other) in [
+                (file.mass, muscle.mass),
+                (file.L_se0, muscle.L_se0),
+                (file.maximum_fascicle_length(), longest),
+            ] {
+                assert!((one / other - 1.0).abs() < 1e-9, "{name}: {one} {other}");
+            }
+            assert_eq!(file.fibers, muscle.fibers, "{name}");
         }
     }
 
@@ -186,6 +222,11 @@ mod tests {
     #[test]
     fn every_muscle_builds_in_f32_and_follows_the_reference() {
         builds(Arithmetic::F32, 0.1);
+    }
+
+    #[test]
+    fn every_muscle_builds_in_fixed_point_and_follows_the_reference() {
+        builds(Arithmetic::Fixed, 0.1);
     }
 
     #[test]

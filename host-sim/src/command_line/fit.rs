@@ -1,0 +1,144 @@
+//! `vm fit`: a muscle fitted to recordings.
+
+use super::print;
+use crate::fit::{Fit, Search, Start, Trials, fit, fitted_file, page};
+use crate::trace;
+use clap::Args;
+use comfy_table::{Table, presets};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct FitArgs {
+    /// The muscle to start from, in TOML, or its name in `vm muscles`.
+    #[arg(long)]
+    muscle: PathBuf,
+    /// Recordings and free parameters, in TOML (host-sim/docs/trials.md).
+    #[arg(long)]
+    trials: PathBuf,
+    /// The folder of the recordings, if it is not that of the list.
+    #[arg(long)]
+    data: Option<PathBuf>,
+    /// Where the fitted muscle goes, in TOML.
+    #[arg(long)]
+    out: PathBuf,
+    /// Where a page of every trial and parameter goes, in HTML.
+    #[arg(long)]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArgs,
+}
+
+/// How to search.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct SearchArgs {
+    /// How many starts: the first where the muscle is, the others drawn.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
+    /// What they are drawn from: the same seed gives the same bytes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl SearchArgs {
+    /// The search.
+    pub fn search(self) -> Search {
+        Search { starts: self.starts.into(), seed: self.seed }
+    }
+}
+
+pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
+    // Before all is fitted, and not after.
+    for (option, output) in [("--out", Some(&args.out)), ("--report", args.report.as_ref())] {
+        let Some(output) = output else { continue };
+        trace::check_folder(output)?;
+        for (read, file) in [("--muscle", &args.muscle), ("--trials", &args.trials)] {
+            if trace::same_file(output, file) {
+                let output = output.display();
+                return Err(format!("{option} {output}: must be another file than {read}'s").into());
+            }
+        }
+    }
+    if args.report.as_ref() == Some(&args.out) {
+        return Err("--report: must be another file than --out's".into());
+    }
+    let start = Start::read(&args.muscle)?;
+    let own = args.trials.parent().unwrap_or(Path::new("."));
+    let folder = args.data.as_deref().unwrap_or(own);
+    let trials = Trials::read(&args.trials, folder, &start.named)?;
+    let search = args.search.search();
+    let fit = fit(&start.named, start.keep_force, trials, &search)?;
+    let origin = format!(
+        "Fitted by vm fit to {}, from {}, {} starts, seed {}.",
+        file_name(&args.trials),
+        file_name(&args.muscle),
+        search.starts,
+        search.seed
+    );
+    let text = fitted_file(&start.table, &fit, &origin);
+    let report = args.report.as_ref().map(|_| page(&fit, &origin)).transpose()?;
+    trace::write_atomically(&args.out, text.as_bytes())?;
+    if let (Some(path), Some(page)) = (&args.report, report) {
+        trace::write_atomically(path, page.as_bytes())?;
+    }
+    print(&parameters(&fit))?;
+    for pair in &fit.pairs {
+        let [one, other] = &pair.names;
+        print(&format!("{one} and {other} trade off: correlation {:.3}", pair.correlation))?;
+    }
+    print(&trials_table(&fit))?;
+    let (starts, near) = fit.starts;
+    print(&format!(
+        "residuals {:.2} times the stated noise; {near} of {starts} starts ended at the best",
+        fit.noise_ratio
+    ))?;
+    for confirmed in &fit.confirmed {
+        let (max, rms) = confirmed.difference;
+        let name = confirmed.arithmetic.name();
+        print(&format!("{name}: {max:.3} % of F0 from f64 at most, {rms:.4} % rms"))?;
+    }
+    Ok(())
+}
+
+/// The last part of a path: where it is on this machine is nobody's business.
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(header.iter().copied());
+    table
+}
+
+fn parameters(fit: &Fit) -> Table {
+    let mut table = table(&["parameter", "value", "standard error", "95 % from", "to", "note"]);
+    for estimate in &fit.estimates {
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.5e}"));
+        table.add_row([
+            estimate.name.clone(),
+            number(Some(estimate.value)),
+            number(estimate.standard_error),
+            number(estimate.interval().map(|interval| interval.0)),
+            number(estimate.interval().map(|interval| interval.1)),
+            estimate.note().to_owned(),
+        ]);
+    }
+    table
+}
+
+fn trials_table(fit: &Fit) -> Table {
+    let mut table = table(&["trial", "role", "mae % F0", "rms % F0", "mean % F0", "status"]);
+    for trial in &fit.trials {
+        table.add_row([
+            trial.name.clone(),
+            trial.role.name().to_owned(),
+            format!("{:.2}", trial.mae_pct_f0),
+            format!("{:.2}", trial.rms_pct_f0),
+            format!("{:+.2}", trial.bias_pct_f0),
+            trial.status_names(),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,162 @@
+//! A fit from the files to what is found: parameters, what is known of them, and every trial beside the model.
+
+use super::FitError;
+use super::problem::Problem;
+use super::solve::Search;
+use super::statistics::{Estimate, Pair, statistics};
+use super::trials::{Role, Trials};
+use crate::engine::{self, Arithmetic, RunError};
+use crate::metrics::ForceError;
+use crate::muscle_file::NamedMuscle;
+use crate::reference::Muscle;
+use rayon::prelude::*;
+use vm_nostd::Status;
+
+/// A trial beside the model.
+#[derive(Clone, Debug)]
+pub struct TrialFit {
+    /// Its name.
+    pub name: String,
+    /// What it is for.
+    pub role: Role,
+    /// Times of the readings, s.
+    pub times: Vec<f64>,
+    /// Measured force, N.
+    pub measured: Vec<f64>,
+    /// The model's, N.
+    pub model: Vec<f64>,
+    /// Mean absolute error, % of F0.
+    pub mae_pct_f0: f64,
+    /// Root mean square error, % of F0.
+    pub rms_pct_f0: f64,
+    /// Mean error, % of F0.
+    pub bias_pct_f0: f64,
+    /// What the model saturated on the way.
+    pub status: Status,
+}
+
+/// The fitted muscle in another arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Confirmed {
+    /// Which.
+    pub arithmetic: Arithmetic,
+    /// Its largest and root mean square difference from `f64`, of all trials, % of F0.
+    pub difference: (f64, f64),
+}
+
+/// What a fit found.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The muscle.
+    pub muscle: Muscle,
+    /// The recruitment curve, in the units of the list of trials.
+    pub curve: Option<[f64; 4]>,
+    /// Every parameter.
+    pub estimates: Vec<Estimate>,
+    /// Pairs that trade off.
+    pub pairs: Vec<Pair>,
+    /// Root mean square of the residuals, in stated noise.
+    pub noise_ratio: f64,
+    /// Stated noise, N.
+    pub noise: f64,
+    /// Every trial.
+    pub trials: Vec<TrialFit>,
+    /// The same muscle in the other arithmetics.
+    pub confirmed: Vec<Confirmed>,
+    /// How the search went: starts, and how many of them ended at the best.
+    pub starts: (usize, usize),
+}
+
+/// Fits a muscle to trials. `keep_force` keeps F0 where it is not free, else mass is kept.
+pub fn fit(
+    start: &NamedMuscle,
+    keep_force: bool,
+    trials: Trials,
+    search: &Search,
+) -> Result<Fit, FitError> {
+    let problem = Problem::new(start.muscle.clone(), keep_force, trials)?;
+    let (solution, near) = search.best(&problem)?;
+    let values = &solution.values;
+    let failed = |why: &str| FitError::NoSolution(search.starts, why.to_owned());
+    let jacobian = problem.jacobian(values).ok_or_else(|| failed("no derivatives at the end"))?;
+    let noise = problem.trials.noise;
+    let played = |arithmetic| {
+        problem
+            .trials
+            .trials
+            .par_iter()
+            .map(|trial| {
+                problem.play(trial, values, arithmetic).map_err(|source: RunError| {
+                    FitError::Start { trial: trial.name.clone(), source }
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let f0 = problem.f0(values);
+    let all = played(Arithmetic::F64)?;
+    let series: Vec<Vec<f64>> = problem
+        .trials
+        .trials
+        .iter()
+        .zip(&all)
+        .filter(|(trial, _)| trial.role == Role::Fit)
+        .map(|(trial, played)| {
+            let scale = trial.weight.sqrt() / noise;
+            played.model.iter().zip(&played.measured).map(|(m, f)| scale * (m - f)).collect()
+        })
+        .collect();
+    let found = statistics(problem.parameters(), values, &jacobian, &series);
+    if !found.undetermined.is_empty() {
+        return Err(FitError::Undetermined(found.undetermined));
+    }
+    let forces = |played: &[super::problem::Played]| -> Vec<f64> {
+        played.iter().flat_map(|played| played.model.iter().copied()).collect()
+    };
+    let confirmed = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed]
+        .into_iter()
+        .map(|arithmetic| {
+            let error = ForceError::between(&forces(&played(arithmetic)?), &forces(&all), f0);
+            Ok(Confirmed { arithmetic, difference: (error.max, error.rms) })
+        })
+        .collect::<Result<_, FitError>>()?;
+    let trials = problem
+        .trials
+        .trials
+        .iter()
+        .zip(all)
+        .map(|(trial, played)| {
+            let error = ForceError::between(&played.model, &played.measured, f0);
+            let absolute: f64 =
+                played.model.iter().zip(&played.measured).map(|(m, f)| (m - f).abs()).sum();
+            TrialFit {
+                name: trial.name.clone(),
+                role: trial.role,
+                times: trial.readings.iter().map(|reading| reading.0).collect(),
+                mae_pct_f0: 100.0 * absolute / (f0 * played.model.len() as f64),
+                rms_pct_f0: error.rms,
+                bias_pct_f0: error.bias,
+                measured: played.measured,
+                model: played.model,
+                status: played.status,
+            }
+        })
+        .collect();
+    Ok(Fit {
+        muscle: problem.muscle(values),
+        curve: problem.curve(values),
+        estimates: found.estimates,
+        pairs: found.pairs,
+        noise_ratio: found.noise_ratio,
+        noise,
+        trials,
+        confirmed,
+        starts: (search.starts, near),
+    })
+}
+
+impl TrialFit {
+    /// What the model saturated, for a table.
+    pub fn status_names(&self) -> String {
+        engine::status_names(self.status)
+    }
+}

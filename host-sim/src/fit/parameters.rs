@@ -1,0 +1,186 @@
+//! Free parameters: what each is of, where it may be, and what is believed of it beforehand.
+
+use super::keys::{self, Key};
+use crate::link;
+use crate::reference::Muscle;
+use serde::Deserialize;
+
+/// What a parameter is a number of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// The muscle.
+    Muscle(Key),
+    /// The recruitment curve: the value of this index.
+    Curve(usize),
+    /// An offset that signals of the trials name.
+    Offset,
+}
+
+/// What is believed of a parameter before the recordings: a mean and a standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Prior {
+    /// In the parameter's unit.
+    pub mean: f64,
+    /// Standard deviation, in the parameter's unit.
+    pub spread: f64,
+}
+
+/// A free parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, of a key of the muscle file or of an offset.
+    pub name: String,
+    /// What it is of.
+    pub place: Place,
+    /// Where the search starts.
+    pub start: f64,
+    /// Least and greatest.
+    pub bounds: (f64, f64),
+    /// What is believed of it.
+    pub prior: Option<Prior>,
+}
+
+/// How far from the start other starts are drawn, as a factor, where no bounds are nearer.
+const DRAWN: f64 = 3.0;
+
+impl Parameter {
+    /// Where starts are drawn from, and against which determination is judged: the bounds, but no further than
+    /// a factor of three from the start.
+    pub fn range(&self) -> (f64, f64) {
+        let (least, most) = self.bounds;
+        let (a, b) = (self.start / DRAWN, self.start * DRAWN);
+        if a == b { (least, most) } else { (least.max(a.min(b)), most.min(a.max(b))) }
+    }
+
+    /// The parameter from an unbounded number: a logistic curve from bound to bound.
+    pub fn bounded(&self, free: f64) -> f64 {
+        let (least, most) = self.bounds;
+        least + (most - least) / (1.0 + (-free).exp())
+    }
+
+    /// The unbounded number of a value between the bounds.
+    pub fn unbounded(&self, value: f64) -> f64 {
+        let (least, most) = self.bounds;
+        let share = ((value - least) / (most - least)).clamp(1e-6, 1.0 - 1e-6);
+        (share / (1.0 - share)).ln()
+    }
+
+    /// Whether a value is at one of the bounds, for all that the search can tell.
+    pub fn is_at_bound(&self, value: f64) -> bool {
+        let (least, most) = self.bounds;
+        (value - least).min(most - value) < 1e-4 * (most - least)
+    }
+}
+
+/// A muscle with its parameters in their places; F0 is set last, so that it holds whatever else changes, and is
+/// kept where `keep_force` says so.
+pub fn applied(
+    start: &Muscle,
+    parameters: &[Parameter],
+    values: &[f64],
+    keep_force: bool,
+) -> Muscle {
+    let mut muscle = start.clone();
+    let mut force = keep_force.then(|| start.f0());
+    for (parameter, &value) in parameters.iter().zip(values) {
+        match &parameter.place {
+            Place::Muscle(Key::Force) => force = Some(value),
+            Place::Muscle(key) => key.set(&mut muscle, value),
+            Place::Curve(_) | Place::Offset => {}
+        }
+    }
+    if let Some(force) = force {
+        keys::set_force(&mut muscle, force);
+    }
+    muscle
+}
+
+/// The values of a key around the muscle's own that the builder admits, all else as it is.
+pub fn admitted(muscle: &Muscle, key: &Key) -> Option<(f64, f64)> {
+    let start = key.value(muscle)?;
+    let valid = |value: f64| {
+        let mut other = muscle.clone();
+        key.set(&mut other, value);
+        link::validate(&other).is_ok()
+    };
+    let edge = |direction: f64| {
+        let (mut inside, mut step) = (start, 0.1 * start.abs().max(1e-3));
+        for _ in 0..40 {
+            if !valid(inside + direction * step) {
+                break;
+            }
+            inside += direction * step;
+            step *= 2.0;
+        }
+        let mut outside = inside + direction * step;
+        while (outside - inside).abs() > 1e-6 * inside.abs().max(1e-6) {
+            let middle = 0.5 * (inside + outside);
+            if valid(middle) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        inside
+    };
+    valid(start).then(|| (edge(-1.0), edge(1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::paper_muscle;
+
+    fn key(name: &str) -> Key {
+        Key::named(name).expect("a key")
+    }
+
+    #[test]
+    fn bounds_are_those_of_the_builder() {
+        let muscle = paper_muscle();
+        // MuscleParams: f0.5 is 0.5 to 200 pps; nf0 and others follow from what they make.
+        let (least, most) = admitted(&muscle, &key("fiber[0].f05_pps")).expect("a range");
+        assert!((least - 0.5).abs() < 1e-3 && (most - 200.0).abs() < 1e-3, "{least} {most}");
+        let (least, most) = admitted(&muscle, &key("recruitment_saturation")).expect("a range");
+        assert!((least - 0.01).abs() < 1e-4 && (most - 1.0).abs() < 1e-4, "{least} {most}");
+        assert_eq!(admitted(&muscle, &key("fatigue.beta")), None);
+    }
+
+    #[test]
+    fn a_parameter_goes_to_its_bounds_and_no_further() {
+        let parameter = Parameter {
+            name: "fascicle_length_cm".to_owned(),
+            place: Place::Muscle(key("fascicle_length_cm")),
+            start: 11.0,
+            bounds: (5.0, 20.0),
+            prior: None,
+        };
+        for value in [5.1, 11.0, 19.9] {
+            assert!((parameter.bounded(parameter.unbounded(value)) - value).abs() < 1e-9);
+        }
+        assert!(parameter.bounded(-700.0) >= 5.0 && parameter.bounded(700.0) <= 20.0);
+        assert!(parameter.is_at_bound(5.001) && !parameter.is_at_bound(5.1));
+        assert_eq!(parameter.range(), (5.0, 20.0));
+    }
+
+    #[test]
+    fn force_holds_whatever_else_changes() {
+        let muscle = paper_muscle();
+        let parameter = |name: &str, start| Parameter {
+            name: name.to_owned(),
+            place: Place::Muscle(key(name)),
+            start,
+            bounds: (1.0, 1000.0),
+            prior: None,
+        };
+        let both =
+            [parameter("max_isometric_force_n", 266.0), parameter("fascicle_length_cm", 11.0)];
+        let fitted = applied(&muscle, &both, &[300.0, 8.0], false);
+        assert!((fitted.f0() - 300.0).abs() < 1e-9 && fitted.L_ce0 == 0.08);
+        let length = &both[1..];
+        assert!((applied(&muscle, length, &[8.0], true).f0() - muscle.f0()).abs() < 1e-9);
+        let lighter = applied(&muscle, length, &[5.5], false);
+        assert!((lighter.f0() - 2.0 * muscle.f0()).abs() < 1e-9, "mass is kept");
+    }
+}

@@ -1,0 +1,198 @@
+//! A signal of a trial: constant, in steps, or recorded; scaled, with an offset that may be a free parameter.
+
+use super::FitError;
+use super::recording::{Column, Recording, Source};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A signal as the list of trials gives it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignalTable {
+    constant: Option<f64>,
+    steps: Option<Vec<(f64, f64)>>,
+    file: Option<PathBuf>,
+    #[serde(default = "comma")]
+    delimiter: String,
+    #[serde(default)]
+    skip_lines: usize,
+    time: Option<Column>,
+    value: Option<Column>,
+    #[serde(default = "one")]
+    scale: f64,
+    #[serde(default)]
+    offset: OffsetKey,
+}
+
+fn comma() -> String {
+    ",".to_owned()
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A number, or the name of a free parameter.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "must be a number or the name of a free parameter")]
+enum OffsetKey {
+    Fixed(f64),
+    Free(String),
+}
+
+impl Default for OffsetKey {
+    fn default() -> Self {
+        Self::Fixed(0.0)
+    }
+}
+
+/// What is added to a signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Offset {
+    /// Always so much.
+    Fixed(f64),
+    /// The value of the free parameter of this index.
+    Free(usize),
+}
+
+impl Offset {
+    /// So much, with these values of the free parameters.
+    pub fn value(self, values: &[f64]) -> f64 {
+        match self {
+            Self::Fixed(offset) => offset,
+            Self::Free(index) => values[index],
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Shape {
+    Constant(f64),
+    /// From each time (s) on; the first also before.
+    Steps(Vec<(f64, f64)>),
+    Recorded(Recording),
+}
+
+/// A signal over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signal {
+    shape: Shape,
+    scale: f64,
+    offset: Offset,
+}
+
+impl Signal {
+    /// A signal that never changes.
+    pub fn constant(value: f64) -> Self {
+        Self { shape: Shape::Constant(value), scale: 1.0, offset: Offset::Fixed(0.0) }
+    }
+
+    /// Reads a signal, its file in `folder`; `free` are the names of the offsets that may be named, `refuse` says
+    /// what is wrong with a key of it.
+    pub fn read(
+        table: &SignalTable,
+        folder: &Path,
+        free: &[&str],
+        refuse: &dyn Fn(String) -> FitError,
+    ) -> Result<Self, FitError> {
+        let shape = match (table.constant, &table.steps, &table.file) {
+            (Some(constant), None, None) if constant.is_finite() => Shape::Constant(constant),
+            (None, Some(steps), None) => {
+                let increasing = steps.windows(2).all(|pair| pair[0].0 < pair[1].0);
+                let finite = steps.iter().all(|step| step.0.is_finite() && step.1.is_finite());
+                if steps.is_empty() || !increasing || !finite {
+                    let limit = "must be [time, value] pairs, at least one, times increasing";
+                    return Err(refuse(format!("steps: {limit}")));
+                }
+                Shape::Steps(steps.clone())
+            }
+            (None, None, Some(file)) => {
+                let source = table.source(&folder.join(file), refuse)?;
+                Shape::Recorded(Recording::read(&source)?)
+            }
+            _ => {
+                let limit = "give one of constant (a finite number), steps and file".to_owned();
+                return Err(refuse(limit));
+            }
+        };
+        if !table.scale.is_finite() || table.scale == 0.0 {
+            return Err(refuse(format!("scale = {}: must be finite and not 0", table.scale)));
+        }
+        let offset = match &table.offset {
+            OffsetKey::Fixed(offset) => Offset::Fixed(*offset),
+            OffsetKey::Free(name) => match free.iter().position(|free| free == name) {
+                Some(index) => Offset::Free(index),
+                None => {
+                    return Err(refuse(format!("offset = \"{name}\": no [[free]] of that name")));
+                }
+            },
+        };
+        Ok(Self { shape, scale: table.scale, offset })
+    }
+
+    /// The recording that it is, if it is one.
+    pub fn recording(&self) -> Option<&Recording> {
+        match &self.shape {
+            Shape::Recorded(recording) => Some(recording),
+            _ => None,
+        }
+    }
+
+    /// Its value at a time (s), with these values of the free parameters.
+    pub fn at(&self, time: f64, values: &[f64]) -> f64 {
+        let raw = match &self.shape {
+            Shape::Constant(constant) => *constant,
+            Shape::Steps(steps) => {
+                let after = steps.partition_point(|step| step.0 <= time);
+                steps[after.saturating_sub(1)].1
+            }
+            Shape::Recorded(recording) => recording.at(time),
+        };
+        self.scaled(raw, values)
+    }
+
+    /// A raw value of it, scaled and offset.
+    pub fn scaled(&self, raw: f64, values: &[f64]) -> f64 {
+        raw * self.scale + self.offset.value(values)
+    }
+
+    /// The same signal, times a factor.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self { scale: self.scale * factor, ..self }
+    }
+
+    /// Gives its free parameter the number that `places` has for it.
+    pub fn renumber(&mut self, places: &[usize]) {
+        if let Offset::Free(index) = &mut self.offset {
+            *index = places[*index];
+        }
+    }
+
+    /// The free parameter that is its offset.
+    pub fn free(&self) -> Option<usize> {
+        match self.offset {
+            Offset::Free(index) => Some(index),
+            Offset::Fixed(_) => None,
+        }
+    }
+}
+
+impl SignalTable {
+    fn source(&self, path: &Path, refuse: &dyn Fn(String) -> FitError) -> Result<Source, FitError> {
+        let delimiter = match self.delimiter.as_bytes() {
+            [one] => Some(*one),
+            _ if self.delimiter == "blanks" => None,
+            _ => {
+                let given = &self.delimiter;
+                let limit = "must be one character, or \"blanks\" for any run of them";
+                return Err(refuse(format!("delimiter = \"{given}\": {limit}")));
+            }
+        };
+        let (Some(time), Some(value)) = (self.time.clone(), self.value.clone()) else {
+            return Err(refuse("a file needs the columns time and value".to_owned()));
+        };
+        let (path, skip_lines) = (path.to_owned(), self.skip_lines);
+        Ok(Source { path, delimiter, skip_lines, time, value })
+    }
+}

@@ -1,0 +1,179 @@
+//! The search: Levenberg and Marquardt's method from several starts, on all cores.
+
+use super::FitError;
+use super::problem::Problem;
+use indicatif::ProgressBar;
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+/// How to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// How many starts: the first where the parameters start, the others drawn.
+    pub starts: usize,
+    /// What they are drawn from; the same seed gives the same fit.
+    pub seed: u64,
+}
+
+/// What a start led to.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Values of the parameters.
+    pub values: Vec<f64>,
+    /// Half the sum of squares of residuals and departures.
+    pub objective: f64,
+}
+
+/// Evaluations of the model per parameter that a start may take.
+const PATIENCE: usize = 20;
+/// Relative change of the sum of squares, or of the parameters, that ends a search.
+const TOLERANCE: f64 = 1e-6;
+/// Step of the one-sided differences, in unbounded numbers.
+const STEP: f64 = 1e-5;
+/// A residual where no muscle can be, in noise: worse than any of a muscle.
+const IMPOSSIBLE: f64 = 1e6;
+
+impl Search {
+    /// Where the starts are: the first as given, the others by a Latin hypercube over the ranges.
+    fn starts(&self, problem: &Problem) -> Vec<Vec<f64>> {
+        let parameters = problem.parameters();
+        let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        // 53 bits, 0 up to but not 1.
+        let mut share = || (generator.next_u64() >> 11) as f64 * 2_f64.powi(-53);
+        let mut starts = vec![parameters.iter().map(|p| p.start).collect::<Vec<_>>()];
+        let drawn = self.starts.saturating_sub(1);
+        starts.resize(1 + drawn, Vec::new());
+        for parameter in parameters {
+            let (least, most) = parameter.range();
+            let mut strata: Vec<usize> = (0..drawn).collect();
+            for last in (1..drawn).rev() {
+                strata.swap(last, (share() * (last + 1) as f64) as usize);
+            }
+            for (start, stratum) in starts[1..].iter_mut().zip(strata) {
+                let place = (stratum as f64 + share()) / drawn as f64;
+                start.push(least + place * (most - least));
+            }
+        }
+        starts
+    }
+
+    /// The best of what the starts led to, and how many came as near to it as makes no difference.
+    pub fn best(&self, problem: &Problem) -> Result<(Solution, usize), FitError> {
+        let starts = self.starts(problem);
+        let progress = ProgressBar::new(starts.len() as u64);
+        let solutions: Vec<Result<Solution, String>> = starts
+            .into_par_iter()
+            .map(|start| {
+                let solution = descend(problem, &start);
+                progress.inc(1);
+                solution
+            })
+            .collect();
+        progress.finish_and_clear();
+        let why = solutions.iter().find_map(|solution| solution.as_ref().err().cloned());
+        let mut found: Vec<Solution> = solutions.into_iter().flatten().collect();
+        // Stable, so that equals stay in the order of the starts.
+        found.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        let Some(best) = found.first().cloned() else {
+            return Err(FitError::NoSolution(self.starts, why.unwrap_or_default()));
+        };
+        let near = found.iter().filter(|s| s.objective <= 1.001 * best.objective + 1e-9).count();
+        Ok((best, near))
+    }
+}
+
+fn descend(problem: &Problem, start: &[f64]) -> Result<Solution, String> {
+    if problem.residuals(start).is_none() {
+        return Err("no muscle has the values of the start".to_owned());
+    }
+    let free = problem.parameters().iter().zip(start).map(|(p, &value)| p.unbounded(value));
+    let descent = Descent::new(problem, DVector::from_iterator(start.len(), free));
+    let method = LevenbergMarquardt::new()
+        .with_ftol(TOLERANCE)
+        .with_xtol(TOLERANCE)
+        .with_gtol(TOLERANCE)
+        .with_stepbound(1.0)
+        .with_patience(PATIENCE);
+    let (end, report) = method.minimize(descent);
+    if report.objective_function.is_finite() && end.possible() {
+        Ok(Solution { values: end.values(), objective: report.objective_function })
+    } else {
+        Err(format!("{:?}", report.termination))
+    }
+}
+
+/// One start on its way.
+struct Descent<'a> {
+    problem: &'a Problem,
+    free: DVector<f64>,
+    residuals: Option<DVector<f64>>,
+    count: usize,
+}
+
+impl<'a> Descent<'a> {
+    fn new(problem: &'a Problem, free: DVector<f64>) -> Self {
+        let mut descent = Self { problem, free: free.clone(), residuals: None, count: 0 };
+        descent.count = descent.at(&free).map_or(0, |residuals| residuals.len());
+        descent.set_params(&free);
+        descent
+    }
+
+    fn possible(&self) -> bool {
+        self.residuals.is_some()
+    }
+
+    fn values_at(&self, free: &DVector<f64>) -> Vec<f64> {
+        self.problem.parameters().iter().zip(free.iter()).map(|(p, &x)| p.bounded(x)).collect()
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.values_at(&self.free)
+    }
+
+    /// Residuals, and departures from what is believed.
+    fn at(&self, free: &DVector<f64>) -> Option<DVector<f64>> {
+        let values = self.values_at(free);
+        let mut residuals = self.problem.residuals(&values)?;
+        residuals.extend(self.problem.departures(&values));
+        Some(DVector::from_vec(residuals))
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
+    type ParameterStorage = Owned<f64, Dyn>;
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+
+    fn set_params(&mut self, free: &DVector<f64>) {
+        self.free.copy_from(free);
+        self.residuals = self.at(free);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.free.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        // A step to where no muscle can be is taken back, not the end.
+        let impossible = || DVector::from_element(self.count, IMPOSSIBLE);
+        Some(self.residuals.clone().unwrap_or_else(impossible))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let middle = self.residuals.as_ref()?;
+        let mut jacobian = DMatrix::zeros(middle.len(), self.free.len());
+        for column in 0..self.free.len() {
+            let moved = |step: f64| {
+                let mut free = self.free.clone();
+                free[column] += step;
+                Some((self.at(&free)? - middle) / step)
+            };
+            jacobian.set_column(column, &moved(STEP).or_else(|| moved(-STEP))?);
+        }
+        Some(jacobian)
+    }
+}

@@ -1,0 +1,213 @@
+//! What the recordings tell of the parameters: linear least squares about the solution.
+//!
+//! With J the derivatives of the residuals and s² their variance, the covariance of the parameters is
+//! (JᵀJ/s² + P)⁻¹, P being the precision of what is believed beforehand. Residuals of a model that is not quite
+//! the muscle go together from reading to reading: s² is multiplied by (1 + r)/(1 - r) of their correlation r with
+//! the one before, which is the variance of a mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
+
+use super::parameters::Parameter;
+use nalgebra::DMatrix;
+
+/// Half of a 95 % interval, in standard errors.
+const NORMAL_95: f64 = 1.96;
+/// Correlation from which on two parameters are said to trade off.
+const TRADE_OFF: f64 = 0.95;
+/// A standard error of so much of the prior's spread: the recordings said nothing.
+const AT_PRIOR: f64 = 0.9;
+
+/// A fitted parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Standard error, recordings and prior together; none at a bound.
+    pub standard_error: Option<f64>,
+    /// Whether it ended at one of its bounds.
+    pub at_bound: bool,
+    /// Whether the recordings left it at its prior.
+    pub at_prior: bool,
+}
+
+impl Estimate {
+    /// What has to be said of it, if anything.
+    pub fn note(&self) -> &'static str {
+        match self {
+            Self { at_bound: true, .. } => "at its bound",
+            Self { at_prior: true, .. } => "left at its prior",
+            _ => "",
+        }
+    }
+
+    /// The 95 % interval.
+    pub fn interval(&self) -> Option<(f64, f64)> {
+        self.standard_error.map(|e| (self.value - NORMAL_95 * e, self.value + NORMAL_95 * e))
+    }
+}
+
+/// Two parameters that trade off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Their names.
+    pub names: [String; 2],
+    /// Their correlation.
+    pub correlation: f64,
+}
+
+/// What is known of a solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// One of each parameter.
+    pub estimates: Vec<Estimate>,
+    /// Pairs that trade off.
+    pub pairs: Vec<Pair>,
+    /// Parameters that the recordings do not determine and that have no prior.
+    pub undetermined: Vec<String>,
+    /// Root mean square of the residuals, in stated noise.
+    pub noise_ratio: f64,
+}
+
+/// The statistics of a solution: `jacobian` is by each parameter in units of its range, `series` are the residuals
+/// trial by trial.
+pub fn statistics(
+    parameters: &[Parameter],
+    values: &[f64],
+    jacobian: &DMatrix<f64>,
+    series: &[Vec<f64>],
+) -> Statistics {
+    let count: usize = series.iter().map(Vec::len).sum();
+    let squares: f64 = series.iter().flatten().map(|r| r * r).sum();
+    let freedom = count.saturating_sub(parameters.len()).max(1) as f64;
+    // Not less than rounding, which a perfect fit is left with.
+    let variance = (squares / freedom).max(1e-12) * inflation(series);
+    let at_bound: Vec<bool> =
+        parameters.iter().zip(values).map(|(p, &value)| p.is_at_bound(value)).collect();
+    let free: Vec<usize> = (0..parameters.len()).filter(|&index| !at_bound[index]).collect();
+    let range = |index: usize| {
+        let (least, most) = parameters[index].range();
+        most - least
+    };
+    let columns = jacobian.select_columns(&free);
+    let information = columns.transpose() * &columns / variance;
+    let mut informed = information;
+    for (place, &index) in free.iter().enumerate() {
+        if let Some(prior) = parameters[index].prior {
+            informed[(place, place)] += (range(index) / prior.spread).powi(2);
+        }
+    }
+    let together = covariance(&informed);
+    let mut estimates = Vec::new();
+    let mut undetermined = Vec::new();
+    for (index, parameter) in parameters.iter().enumerate() {
+        let place = free.iter().position(|&free| free == index);
+        let error = place.map(|place| together[(place, place)].sqrt() * range(index));
+        let spread = parameter.prior.map(|prior| prior.spread);
+        // An interval as wide as all values that come into question tells nothing.
+        let wide = error.is_some_and(|error| 2.0 * NORMAL_95 * error >= range(index));
+        if spread.is_none() && wide {
+            undetermined.push(parameter.name.clone());
+        }
+        estimates.push(Estimate {
+            name: parameter.name.clone(),
+            value: values[index],
+            standard_error: error,
+            at_bound: at_bound[index],
+            at_prior: matches!((error, spread), (Some(e), Some(s)) if e > AT_PRIOR * s),
+        });
+    }
+    let mut pairs = Vec::new();
+    for (second, &j) in free.iter().enumerate() {
+        for (first, &i) in free[..second].iter().enumerate() {
+            let scale = (together[(first, first)] * together[(second, second)]).sqrt();
+            let correlation = together[(first, second)] / scale;
+            if correlation.abs() > TRADE_OFF {
+                let names = [parameters[i].name.clone(), parameters[j].name.clone()];
+                pairs.push(Pair { names, correlation });
+            }
+        }
+    }
+    let noise_ratio = (squares / count.max(1) as f64).sqrt();
+    Statistics { estimates, pairs, undetermined, noise_ratio }
+}
+
+/// By how much the variance of a series grows because its residuals go together.
+fn inflation(series: &[Vec<f64>]) -> f64 {
+    let (mut products, mut squares) = (0.0, 0.0);
+    for residuals in series {
+        products += residuals.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+        squares += residuals.iter().map(|r| r * r).sum::<f64>();
+    }
+    let correlation = if squares > 0.0 { (products / squares).clamp(0.0, 0.999) } else { 0.0 };
+    (1.0 + correlation) / (1.0 - correlation)
+}
+
+/// The inverse of an information matrix; where there is no information, there is next to infinite variance.
+fn covariance(information: &DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = information.clone().symmetric_eigen();
+    let greatest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    let least = (1e-14 * greatest).max(f64::MIN_POSITIVE.sqrt());
+    let inverse = eigen.eigenvalues.map(|value| 1.0 / value.max(least));
+    &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::parameters::{Place, Prior};
+
+    fn parameter(name: &str, prior: Option<Prior>) -> Parameter {
+        let (name, place) = (name.to_owned(), Place::Offset);
+        Parameter { name, place, start: 0.0, bounds: (-5.0, 5.0), prior }
+    }
+
+    /// A straight line a + b t through readings with residuals of ±1, 0.1 apart: its textbook errors.
+    #[test]
+    fn a_line_has_the_errors_of_a_line() {
+        let times: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.1).collect();
+        let residuals: Vec<f64> = (0..1000).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let jacobian = DMatrix::from_fn(1000, 2, |row, column| {
+            10.0 * if column == 0 { 1.0 } else { times[row] }
+        });
+        let parameters = [parameter("a", None), parameter("b", None)];
+        let found = statistics(&parameters, &[0.5, 0.25], &jacobian, &[residuals]);
+        let (n, mean) = (1000.0, 49.95);
+        let spread: f64 = times.iter().map(|t| (t - mean).powi(2)).sum();
+        let variance: f64 = n / (n - 2.0);
+        let slope = (variance / spread).sqrt();
+        let offset = (variance * (1.0 / n + mean * mean / spread)).sqrt();
+        for (estimate, expected) in found.estimates.iter().zip([offset, slope]) {
+            let error = estimate.standard_error.expect("not at a bound");
+            assert!((error / expected - 1.0).abs() < 1e-9, "{estimate:?}: {expected}");
+            assert!(!estimate.at_bound && !estimate.at_prior);
+        }
+        assert!(found.undetermined.is_empty());
+        assert!((found.noise_ratio - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_the_recordings_do_not_tell_is_named_or_left_at_its_prior() {
+        // Only a + b is in the recordings.
+        let jacobian = DMatrix::from_element(100, 2, 10.0);
+        let residuals: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let series = [residuals];
+        let neither = [parameter("a", None), parameter("b", None)];
+        let found = statistics(&neither, &[0.0, 0.0], &jacobian, &series);
+        assert_eq!(found.undetermined, ["a", "b"]);
+        assert!(found.pairs[0].correlation < -0.95, "{:?}", found.pairs);
+
+        let prior = Prior { mean: 0.0, spread: 0.01 };
+        let one = [parameter("a", None), parameter("b", Some(prior))];
+        let found = statistics(&one, &[0.0, 0.0], &jacobian, &series);
+        assert!(found.estimates[1].at_prior, "{:?}", found.estimates);
+        assert!(found.undetermined.is_empty(), "what is believed of b tells a");
+    }
+
+    #[test]
+    fn residuals_that_go_together_count_less() {
+        let apart = inflation(&[(0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect()]);
+        let slow: Vec<f64> = (0..100).map(|i| (f64::from(i) * 0.1).sin()).collect();
+        assert_eq!(apart, 1.0);
+        assert!(inflation(&[slow]) > 100.0);
+    }
+}
