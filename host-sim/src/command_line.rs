@@ -4,6 +4,7 @@ mod arm;
 mod cycles;
 mod fit;
 mod hil;
+mod measured;
 mod muscles;
 mod plot;
 mod stack;
@@ -62,6 +63,8 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Fit a muscle to recordings, and say what they can and cannot tell of it.
     Fit(fit::FitArgs),
+    /// Hold the model against real muscle: sets of recordings from a folder.
+    Measured(measured::MeasuredArgs),
     /// List the human muscles that `--muscle` knows by name, and what is assumed of them.
     Muscles,
     /// Compare the READMEs' measured tables with what is measured.
@@ -174,6 +177,7 @@ pub fn main() -> ExitCode {
         Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),
         Command::Fit(args) => fit::run(&args).map(|()| true),
+        Command::Measured(args) => measured::run(&args),
         Command::Muscles => muscles::run().map(|()| true),
         Command::Readme(args) => compare_readme(&args),
     };

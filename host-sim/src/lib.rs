@@ -11,6 +11,7 @@ pub mod fit;
 pub mod golden;
 pub mod hil;
 pub mod link;
+pub mod measured;
 pub mod metrics;
 pub mod muscle_file;
 pub mod muscles;

@@ -1,0 +1,104 @@
+//! `vm measured`: the model held against real muscle.
+
+use super::fit::SearchArgs;
+use super::{complain, print};
+use crate::fit::Role;
+use crate::measured::{self, Board, LeftOut};
+use clap::Args;
+use comfy_table::{CellAlignment, Table, presets};
+use std::error::Error;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct MeasuredArgs {
+    /// The folder of the recordings: one folder in it per set.
+    #[arg(long)]
+    data: PathBuf,
+    /// Print the trials as a JSON array instead of tables.
+    #[arg(long)]
+    json: bool,
+    /// Also fit models that a feature was left out of.
+    #[arg(long)]
+    ablation: bool,
+    /// Be content if a set is missing.
+    #[arg(long)]
+    allow_missing: bool,
+    #[command(flatten)]
+    search: SearchArgs,
+}
+
+/// True if no set of recordings was missing, or none need be there.
+pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
+    let left_out = if args.ablation { &LeftOut::ALL[..] } else { &LeftOut::ALL[..1] };
+    let board = measured::measure(&args.data, left_out, &args.search.search())?;
+    for (set, reason) in &board.skipped {
+        complain(&format!("SKIPPED {set}: {reason}"));
+    }
+    for (set, out, reason) in &board.refused {
+        complain(&format!("{set} without {out}: {reason}"));
+    }
+    if args.json {
+        print(&serde_json::to_string_pretty(&board.rows)?)?;
+    } else {
+        print(&trials(&board))?;
+        print(&means(&board, left_out))?;
+        for (set, _, fit) in board.fits.iter().filter(|fit| fit.1 == LeftOut::Nothing.name()) {
+            for estimate in &fit.estimates {
+                let (name, value) = (&estimate.name, estimate.value);
+                print(&format!("{set}: {name} = {value:.5} {}", estimate.note()))?;
+            }
+        }
+    }
+    Ok(board.skipped.is_empty() || args.allow_missing)
+}
+
+fn table(header: &[&str], numbers: std::ops::Range<usize>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(header.iter().copied());
+    for column in numbers {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn trials(board: &Board) -> Table {
+    let header = ["dataset", "trial", "role", "left out", "mae % F0", "rms % F0", "published mae"];
+    let mut table = table(&header, 4..7);
+    for row in &board.rows {
+        let published = row
+            .published_mae_pct_f0
+            .map_or("-".to_owned(), |[least, most]| format!("{least} to {most}"));
+        table.add_row([
+            row.dataset.clone(),
+            row.trial.clone(),
+            row.role.to_owned(),
+            row.left_out.to_owned(),
+            format!("{:.2}", row.mae_pct_f0),
+            format!("{:.2}", row.rms_pct_f0),
+            published,
+        ]);
+    }
+    table
+}
+
+fn means(board: &Board, left_out: &[LeftOut]) -> Table {
+    let mut table = table(&["dataset", "left out", "mean mae, fitted", "predicted", "all"], 2..5);
+    let mut sets: Vec<&String> = board.rows.iter().map(|row| &row.dataset).collect();
+    sets.dedup();
+    for set in sets {
+        for &out in left_out {
+            let mean = |role| format!("{:.2}", measured::mean(board, set, role, out));
+            table.add_row([
+                set.clone(),
+                out.name().to_owned(),
+                mean(Some(Role::Fit)),
+                mean(Some(Role::Predict)),
+                mean(None),
+            ]);
+        }
+    }
+    table
+}

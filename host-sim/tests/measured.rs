@@ -1,0 +1,127 @@
+//! `vm measured`: sets of recordings that bring their definition along, those that are missing, and, where their
+//! folder is given, those of real muscle.
+
+use host_sim::engine::{self, Arithmetic};
+use host_sim::fit::{Role, Search};
+use host_sim::measured::{LeftOut, mean, measure};
+use host_sim::muscle_file;
+use host_sim::reference::{Input, Mode};
+use host_sim::trace::InputTrace;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
+
+/// The set: one frequency is fitted, another predicted.
+const TRIALS: &str = "
+noise_n = 1
+[[trial]]
+name = \"40 pps\"
+role = \"fit\"
+mode = \"fes\"
+force = { file = \"forces.csv\", time = \"t_s\", value = \"at_40\" }
+length = { constant = 0.155 }
+activation = { constant = 1 }
+stimulation_pps = { constant = 40 }
+[[trial]]
+name = \"15 pps\"
+role = \"predict\"
+mode = \"fes\"
+force = { file = \"forces.csv\", time = \"t_s\", value = \"at_15\" }
+length = { constant = 0.155 }
+activation = { constant = 1 }
+stimulation_pps = { constant = 15 }
+[[free]]
+name = \"max_isometric_force_n\"
+bounds = [100, 600]
+";
+
+/// A folder with a set of recordings of a muscle of 300 N that the reference made.
+fn synthetic() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut muscle = muscle_file::parse(MUSCLE, Path::new("m.toml")).expect("a muscle").muscle;
+    muscle.mass *= 300.0 / muscle.f0();
+    let run = |frequency: f64| {
+        let input = Input { activation: 1.0, path_length: 0.155, stimulation_frequency: frequency };
+        let trace = InputTrace { start: 0.0, time_step: 1e-3, inputs: vec![input; 501] };
+        let rows = engine::run(&muscle, Mode::Fes, Arithmetic::Reference, &trace).expect("a run");
+        rows.into_iter().map(|row| row.0.force).collect::<Vec<f64>>()
+    };
+    let (at_40, at_15) = (run(40.0), run(15.0));
+    let mut text = "t_s,at_40,at_15\n".to_owned();
+    for tick in (0..=500).step_by(5) {
+        let time = tick as f64 * 1e-3;
+        text += &format!("{time},{:.6},{:.6}\n", at_40[tick], at_15[tick]);
+    }
+    let set = folder.path().join("synthetic");
+    fs::create_dir(&set).expect("a folder");
+    for (name, text) in [("muscle.toml", MUSCLE), ("trials.toml", TRIALS), ("forces.csv", &text)] {
+        fs::write(set.join(name), text).expect("a file");
+    }
+    folder
+}
+
+fn vm(folder: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vm"))
+        .args(["measured", "--starts", "1", "--data"])
+        .arg(folder)
+        .args(more)
+        .output()
+        .expect("vm runs")
+}
+
+#[test]
+fn a_new_folder_is_taken_as_it_is_and_missing_sets_are_said() {
+    let folder = synthetic();
+    let done = vm(folder.path(), &["--json", "--allow-missing", "--ablation"]);
+    let message = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success(), "{message}");
+    let rows: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+    let rows = rows.as_array().expect("an array");
+    assert_eq!(rows.len(), 8, "two trials, four models");
+    let of = |trial: &str, left_out: &str| {
+        rows.iter()
+            .find(|row| row["trial"] == trial && row["left_out"] == left_out)
+            .unwrap_or_else(|| panic!("{trial}, {left_out}"))
+    };
+    for (trial, role) in [("40 pps", "fit"), ("15 pps", "predict")] {
+        let row = of(trial, "nothing");
+        assert_eq!((&row["dataset"], &row["role"]), (&"synthetic".into(), &role.into()));
+        assert!(row["published_mae_pct_f0"].is_null());
+        for error in ["mae_pct_f0", "rms_pct_f0"] {
+            let error = row[error].as_f64().expect("a number");
+            assert!(error < 0.05, "the model that made it: {row}");
+        }
+    }
+    // 1/L - 1 is not 0 here, and at 15 pps n_f counts.
+    let without = of("15 pps", "length dependence of Af")["mae_pct_f0"].as_f64();
+    assert!(without.is_some_and(|error| error > 0.1), "{without:?}");
+
+    let done = vm(folder.path(), &[]);
+    let message = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(1), "{message}");
+    for set in ["krylow_sandercock_1997", "herzog_leonard_2002"] {
+        assert!(message.contains(&format!("SKIPPED {set}")), "{message}");
+    }
+}
+
+/// The folder of real recordings; it is not in the repository.
+const FOLDER: &str = "VM_MEASURED";
+
+#[test]
+fn real_muscle_is_met_as_well_as_when_it_was_defined() {
+    let Some(folder) = std::env::var_os(FOLDER) else {
+        use std::io::Write;
+        // Past the harness, which keeps what a passing test prints to itself.
+        let said = writeln!(std::io::stderr(), "SKIPPED: {FOLDER} does not name the recordings");
+        return said.expect("standard error is open");
+    };
+    let search = Search { starts: 2, seed: 1 };
+    let board = measure(Path::new(&folder), &[LeftOut::Nothing], &search).expect("a scoreboard");
+    assert!(board.skipped.is_empty(), "{:?}", board.skipped);
+    let krylow = mean(&board, "krylow_sandercock_1997", None, LeftOut::Nothing);
+    assert!(krylow <= 4.2, "Krylow & Sandercock: {krylow} % of F0");
+    let herzog = mean(&board, "herzog_leonard_2002", Some(Role::Predict), LeftOut::Nothing);
+    assert!(herzog <= 7.5, "Herzog & Leonard, predicted: {herzog} % of F0");
+}
