@@ -316,11 +316,15 @@ impl<'q> Device<'q> {
     /// What was asked for before a fault is not what whoever arms next asks for. Rows that waited are gone, and
     /// missing among the traces by their numbers.
     fn forget(&mut self) {
-        self.drive = Aged::new(NO_STIMULI);
-        self.demand = Aged::new(NO_DEMAND);
+        self.forget_requests();
         while self.ends.rows.dequeue().is_some() {
             self.rows = self.rows.wrapping_add(1);
         }
+    }
+
+    fn forget_requests(&mut self) {
+        self.drive = Aged::new(NO_STIMULI);
+        self.demand = Aged::new(NO_DEMAND);
     }
 
     /// The tick ends, so many counts of its timer after it was due or, if that is so, after the next one was.
@@ -355,8 +359,7 @@ impl<'q> Device<'q> {
                     *muscle = loaded;
                 }
                 // Electrodes may have other channels now.
-                self.drive = Aged::new(NO_STIMULI);
-                self.demand = Aged::new(NO_DEMAND);
+                self.forget_requests();
                 Outcome::Took(bank)
             }
             Order::Rest(bank) => {
@@ -380,7 +383,8 @@ impl<'q> Device<'q> {
             Order::Arm => armed(self.controller.arm()),
             Order::Stop => {
                 self.controller.fail(Fault::Stopped);
-                self.forget();
+                // Rows are forgotten at the tick's end if it was armed: muscles that only compute go on.
+                self.forget_requests();
                 Outcome::Done
             }
             Order::Report => Outcome::Report(Report {

@@ -7,7 +7,9 @@
 //! that the electrode in question bears.
 
 use crate::guarded::Sum;
-use crate::stimulus::{LEAST_PHASE_US, MOST_RECOVERY, MOST_WIDTH_US, Scale};
+use crate::stimulus::{
+    LEAST_PHASE_US, MOST_COUNTS, MOST_FULL_SCALE_UA, MOST_RECOVERY, MOST_WIDTH_US, Scale,
+};
 use core::fmt;
 use vm_nostd::Checksum;
 
@@ -124,6 +126,13 @@ impl Limits {
         let ever = u32::MAX as i64;
         let checks = [
             check("tick_us", tick_us as i64, SHORTEST_TICK_US as i64, LONGEST_TICK_US as i64),
+            check("scale.full_scale_ua", scale.full_scale_ua as i64, 1, MOST_FULL_SCALE_UA as i64),
+            check(
+                "scale.full_scale_counts",
+                scale.full_scale_counts as i64,
+                MOST_RECOVERY as i64,
+                MOST_COUNTS as i64,
+            ),
             check("amplitude_ua", amplitude, 1, scale.full_scale_ua as i64),
             check("width_us", self.width_us as i64, LEAST_PHASE_US as i64, MOST_WIDTH_US as i64),
             check("frequency_tenths_pps", self.frequency_tenths_pps as i64, 10, 5000),
@@ -269,6 +278,17 @@ mod tests {
             (|l| l.stuck_ms = 1_800_001, "limit stuck_ms = 1800001: must be 1 to 1800000"),
         ] {
             assert_eq!(refused(change), message);
+        }
+        // A converter of 12 bits holds no more counts, and fewer than eight are no recharge phase.
+        for (full_scale_ua, full_scale_counts, message) in [
+            (100_000, 4096, "limit scale.full_scale_counts = 4096: must be 8 to 4095"),
+            (100_000, 7, "limit scale.full_scale_counts = 7: must be 8 to 4095"),
+            (500_001, 4095, "limit scale.full_scale_ua = 500001: must be 1 to 500000"),
+            (0, 4095, "limit scale.full_scale_ua = 0: must be 1 to 500000"),
+        ] {
+            let scale = Scale { full_scale_ua, full_scale_counts };
+            let error = Limits::SURFACE.validate(1000, &scale).expect_err("a scale to refuse");
+            assert_eq!(error.to_string(), message);
         }
         // A tick of 1.5 ms cannot tell 1 ms.
         let limits = Limits { silence_ms: 1, ..Limits::SURFACE };

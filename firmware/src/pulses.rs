@@ -93,7 +93,11 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         if step.output.is_none() {
             self.read_plans();
         }
-        self.next = self.schedule.advance();
+        // The charge of a pulse that was cut short flows off before another pulse begins.
+        self.next = match self.discharge_us {
+            Some(_) => self.schedule.wait(),
+            None => self.schedule.advance(),
+        };
         self.next.duration_us
     }
 
@@ -118,13 +122,11 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// Ends a discharge when its time is over, or with the next pulse.
+    /// Ends a discharge when its time is over.
     fn flow_off(&mut self, step: &Step) {
         let Some(left_us) = self.discharge_us else { return };
         let left_us = left_us.saturating_sub(step.duration_us);
-        if step.output.is_some() {
-            self.discharge_us = None;
-        } else if left_us > 0 {
+        if left_us > 0 {
             self.discharge_us = Some(left_us);
         } else {
             self.discharge_us = None;

@@ -51,6 +51,12 @@ impl Requested {
     pub const NOTHING: Self =
         Self { stimuli: [None; CHANNELS], row_age_us: 0, drive_age_us: 0, is_finite: true };
 
+    /// Of the pulse trains with current, µs; 0 without any.
+    fn longest_period_us(&self) -> u32 {
+        let trains = self.stimuli.iter().flatten().filter(|stimulus| stimulus.amplitude_ua > 0);
+        trains.map(Stimulus::period_us).max().unwrap_or(0)
+    }
+
     /// Whether current is asked for.
     fn stimulates(&self) -> bool {
         self.stimuli.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0)
@@ -96,6 +102,8 @@ pub struct Supervisor {
     /// What was wrong with the inputs of the last tick, if anything.
     wrong: Option<Fault>,
     silence_us: u64,
+    /// Until the pulse after the last that was asked for would be due: pauses within a pulse train are no pauses.
+    train_us: u32,
     /// Of stimulation since the last rest.
     session_us: u64,
     /// Without stimulation.
@@ -121,6 +129,7 @@ impl Supervisor {
             state: State::Latched(boot),
             wrong: Some(boot),
             silence_us: 0,
+            train_us: 0,
             session_us: 0,
             rest_us: 0,
             stuck_us: 0,
@@ -173,7 +182,7 @@ impl Supervisor {
 
     /// One tick: whether what is requested may be put out until the next one, all of it, or nothing.
     pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
-        let stimulates = requested.stimulates();
+        let stimulates = requested.stimulates() || self.train_us > 0;
         // A limit that memory has lost allows nothing.
         let limits = self.limits.get().copied();
         self.wrong = match &limits {
@@ -203,6 +212,8 @@ impl Supervisor {
         }
         let is_armed = self.state == State::Armed;
         self.count_session(limits.as_ref(), is_armed && stimulates);
+        let asked_us = if is_armed { requested.longest_period_us() } else { 0 };
+        self.train_us = self.train_us.saturating_sub(self.tick_us).max(asked_us);
         is_armed
     }
 

@@ -33,6 +33,10 @@ impl Step {
 struct Rhythm {
     /// From now until the next pulse may come, µs; negative once it may.
     due_us: i32,
+    /// The period that `due_us` counts down, µs.
+    period_us: i32,
+    /// Since the last pulse began, µs.
+    since_us: i32,
     /// Counts of the last pulse; none of a channel that has been off since.
     counts: u16,
     /// Width of the last pulse, µs.
@@ -40,7 +44,8 @@ struct Rhythm {
 }
 
 impl Rhythm {
-    const NONE: Self = Self { due_us: 0, counts: 0, width_us: 0 };
+    /// Without a pulse: due at once, whatever the period.
+    const NONE: Self = Self { due_us: 0, period_us: 0, since_us: i32::MAX, counts: 0, width_us: 0 };
 
     /// The most counts of a next pulse of that width. Charge stimulates: a pulse that becomes wider becomes weaker
     /// first.
@@ -102,11 +107,15 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
             for (rhythm, (train, before)) in self.rhythms.iter_mut().zip(trains) {
                 match train {
                     None => rhythm.counts = 0,
-                    // A rhythm goes on; a new one, or one that has been off for long, begins at once.
+                    // A rhythm goes on. Of another one, a pulse comes no sooner after the last than its own period
+                    // says, or strong and rare pulses could take the places of weak and frequent ones.
                     Some(Train { period_us, .. }) => {
                         // Periods are ten seconds at most.
-                        let due_us = rhythm.due_us.min(*period_us as i32);
-                        rhythm.due_us = if before.is_some() { due_us } else { due_us.max(0) };
+                        let period_us = *period_us as i32;
+                        if before.is_none() || period_us != rhythm.period_us {
+                            rhythm.due_us = period_us.saturating_sub(rhythm.since_us).max(0);
+                            rhythm.period_us = period_us;
+                        }
                     }
                 }
             }
@@ -132,6 +141,11 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         self.running.is_none() && self.plan.get().is_none_or(Plan::is_nothing)
     }
 
+    /// Nothing for a while, whatever is due: in place of [`Schedule::advance`].
+    pub(crate) fn wait(&mut self) -> Step {
+        self.pass(Step::IDLE)
+    }
+
     /// What is put out now, and for how long. To be called when the last step has lasted as long as it said.
     pub fn advance(&mut self) -> Step {
         let step = match self.phase() {
@@ -148,9 +162,15 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
                 step
             }
         };
+        self.pass(step)
+    }
+
+    fn pass(&mut self, step: Step) -> Step {
         for rhythm in &mut self.rhythms {
             // A step is short.
-            rhythm.due_us = rhythm.due_us.saturating_sub(step.duration_us as i32);
+            let duration_us = step.duration_us as i32;
+            rhythm.due_us = rhythm.due_us.saturating_sub(duration_us);
+            rhythm.since_us = rhythm.since_us.saturating_add(duration_us);
         }
         step
     }
@@ -195,6 +215,7 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
                 // What was late makes up for it in part: two pulses are never closer than half a period.
                 let period_us = train.period_us as i32;
                 rhythm.due_us = (rhythm.due_us + period_us).max(period_us / 2);
+                rhythm.since_us = 0;
                 rhythm.counts = pulse.counts();
                 rhythm.width_us = train.width_us;
                 let left_us = duration(&pulse, 0);

@@ -19,6 +19,10 @@ pub(crate) const MOST_WIDTH_US: u16 = 1000;
 const MOST_GAP_US: u32 = 200;
 /// How many times longer the recharge phase may be.
 pub(crate) const MOST_RECOVERY: u8 = 8;
+/// The strongest current source, µA.
+pub(crate) const MOST_FULL_SCALE_UA: u32 = 500_000;
+/// The greatest count of the converter that the output stage speaks to.
+pub(crate) const MOST_COUNTS: u16 = 4095;
 /// Longest pulse of any legal stimulus, settling included, µs.
 pub(crate) const LONGEST_PULSE_US: u32 = Stimulus {
     amplitude_ua: 0,
@@ -49,7 +53,7 @@ pub struct Stimulus {
 pub struct Scale {
     /// Current at the greatest count, µA; 1 to 500,000.
     pub full_scale_ua: u32,
-    /// The greatest count: 4095 of a converter of 12 bits.
+    /// The greatest count; 8 to 4095, which is that of a converter of 12 bits.
     pub full_scale_counts: u16,
 }
 

@@ -296,3 +296,18 @@ fn a_drive_of_no_current_does_not_grow_old() {
     bench.order(Order::Drive(Guarded::new(stimuli)));
     assert!((0..2_000).all(|_| bench.tick()));
 }
+
+/// A stop ends current; muscles that only compute go on with their rows.
+#[test]
+fn a_stop_while_nothing_is_armed_drops_no_row() {
+    let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
+    bench.order(Order::Stop);
+    (0..10).for_each(|_| bench.row(row()));
+    bench.order(Order::Stop);
+    let before = bench.device.rows;
+    (0..20).for_each(|_| {
+        bench.tick();
+    });
+    assert_eq!(bench.device.rows - before, 9);
+    assert_eq!(bench.state(), State::Latched(Fault::Stopped));
+}

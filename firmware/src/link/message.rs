@@ -38,8 +38,8 @@ pub enum Request {
     /// from 0 again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
     /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. What a row
-    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault
-    /// while armed, or a stop, takes with it the rows that have not had their tick.
+    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault,
+    /// or a stop, while armed takes with it the rows that have not had their tick.
     Rows {
         /// Number of the first.
         first: u32,

@@ -270,3 +270,95 @@ fn the_least_rise_that_limits_allow_still_rises() {
     let last = bench.put_out.last().expect("pulses").counts;
     assert_eq!(last, 80, "1 mA, in steps of 8 counts");
 }
+
+/// Ticks that ask for nothing within a pulse train are no rest, and do not make a stuck sensor work.
+#[test]
+fn asking_for_nothing_between_pulses_is_no_way_round_the_session() {
+    let limits = Limits { session_ms: 3_000, rest_ms: 10_000, stuck_ms: 2_000, ..BOARD };
+    let trains = |limits, stuck| {
+        let mut bench = armed(limits, 1000);
+        bench.inject(move |o: &mut Observed, r, tick| {
+            o.path_um = Some(160_000 + if stuck { 0 } else { (tick % 2) as i32 });
+            let amplitude_ua = if tick % 10 == 0 { 40_000 } else { 0 };
+            *r = one(Stimulus { frequency_tenths_pps: 1000, ..stimulus(amplitude_ua) });
+        });
+        bench.flows(20_000);
+        let last = bench.put_out.last().expect("pulses").at_us / 1000;
+        (bench.controller.state(), last)
+    };
+    let (state, last) = trains(limits, false);
+    assert_eq!(state, State::Latched(Fault::Session));
+    assert!((2_900..3_020).contains(&last), "{last} ms");
+    let (state, last) = trains(limits, true);
+    assert_eq!(state, State::Latched(Fault::SensorStuck));
+    assert!((1_900..2_020).contains(&last), "{last} ms");
+}
+
+/// Strong and rare pulses do not take the places of weak and frequent ones.
+#[test]
+fn requests_that_change_are_no_way_round_the_root_mean_square() {
+    let limits = Limits { rms_ua: 3_000, ..BOARD };
+    for (strong, period) in [(90, 10), (70, 11), (50, 11), (90, 11), (10, 13)] {
+        let mut bench = armed(limits, 1000);
+        let mut random = 1_u32;
+        bench.inject(move |_, r, tick| {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let by_chance = (random >> 16) % 100 < strong;
+            let wanted = if tick < 4_000 { by_chance } else { tick % period != 0 };
+            *r = one(if wanted {
+                Stimulus { frequency_tenths_pps: 140, ..stimulus(40_000) }
+            } else {
+                Stimulus { frequency_tenths_pps: 1000, ..stimulus(14_000) }
+            });
+        });
+        bench.flows(8_000);
+        assert_eq!(bench.controller.state(), State::Armed);
+        for begin_us in [1_000_000, 2_000_000, 4_500_000, 6_000_000] {
+            let square: f64 = bench
+                .put_out
+                .iter()
+                .filter(|pulse| (begin_us..begin_us + 2_000_000).contains(&pulse.at_us))
+                .map(|pulse| (f64::from(pulse.counts) * 50_000.0 / 4095.0).powi(2) * 400e-6)
+                .sum();
+            let rms = (square / 2.0).sqrt();
+            assert!((500.0..3_050.0).contains(&rms), "{rms} uA, {strong} % and every {period}");
+        }
+    }
+}
+
+/// Whoever stops and arms again after every stimulating phase leaves no charge on the electrodes.
+#[test]
+fn a_pulse_that_was_cut_short_is_discharged_before_another_begins() {
+    let limits = Limits { width_us: 1000, ..Limits::SURFACE }.within_scale(&SCALE);
+    let mut bench = armed(limits, 1000);
+    bench.inject(|_, r, _| {
+        *r = one(Stimulus { width_us: 1000, frequency_tenths_pps: 1000, ..stimulus(20_000) });
+    });
+    let mut cut: Option<u32> = None;
+    let mut cuts = 0;
+    while bench.tick < 2_000 {
+        if bench.timer >= bench.tick * 1000 {
+            bench.control();
+        }
+        let flowed = bench.flowing() > 0;
+        bench.run_out();
+        let electrodes = bench.electrodes.borrow();
+        let connected = !electrodes.cathodic && !electrodes.anodic && electrodes.channels[0];
+        drop(electrodes);
+        if let Some(at_us) = cut
+            && bench.timer < at_us + 19_000
+        {
+            assert!(connected, "{} us after the cut", bench.timer - at_us);
+        }
+        if flowed && bench.electrodes.borrow().cathodic {
+            cut = Some(bench.timer);
+            cuts += 1;
+            bench.electrodes.borrow_mut().words = 0;
+            bench.controller.fail(Fault::Stopped);
+            bench.pulses.attend();
+            bench.controller.acknowledge(Fault::Stopped).expect("its name");
+            bench.controller.arm().expect("nothing is wrong");
+        }
+    }
+    assert!(cuts > 20, "{cuts} cuts");
+}

@@ -77,7 +77,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
     upload.muscle.mass = -1.0;
     assert_eq!(
         refused(&Request::Upload { place: 0, upload }),
-        "mass = -1: must be between 0.00001 and 20"
+        "mass = -1: must be between 0.00001 and 30"
     );
     let mut upload = fes();
     upload.muscle.fibers[1].fiber_type.half_force_frequency = f64::NAN;
