@@ -7,7 +7,8 @@ use host_sim::target::STM32F405;
 use std::path::Path;
 use system_tests::{build, skip};
 
-/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles.
+/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles. A direct call takes the
+/// upper part of RAM, where the stimulator has its statics: the image is another one.
 fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, ProfileError> {
     of_image(image, "libm::math::exp::exp", Some(&[Argument::Double(1.5)]), machine, tracer)
 }
@@ -15,7 +16,7 @@ fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, Profi
 #[test]
 fn the_plugin_and_the_log_show_the_same_execution() {
     let profiles =
-        build(STM32F405, "firmware").map_err(|error| error.to_string()).and_then(|image| {
+        build(STM32F405, "golden").map_err(|error| error.to_string()).and_then(|image| {
             [Tracer::Plugin, Tracer::Log]
                 .map(|tracer| {
                     profile(&image, STM32F405.machine, tracer).map_err(|error| error.to_string())
@@ -36,7 +37,7 @@ fn the_plugin_and_the_log_show_the_same_execution() {
 
 #[test]
 fn a_machine_that_is_not_there_is_named_by_the_emulator() {
-    let image = match build(STM32F405, "firmware") {
+    let image = match build(STM32F405, "golden") {
         Ok(image) => image,
         Err(reason) => return skip(&reason.to_string()),
     };
