@@ -116,15 +116,15 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     ]);
     let Said::Words(words) = &said[2] else { panic!("{said:?}") };
 
-    let (address, size) = symbol(&image, "local_init_lines");
+    let (address, size) = symbol(&image, "local_init_banks");
     let mut debugger = port.attach();
     let memory = debugger.read(address, size);
-    // Tendon extension, velocity and path lie one behind the other, somewhere in what tick and link share.
+    // Tendon extension, velocity and path lie one behind the other, in the bank of the tick and maybe in the other.
     let pattern: Vec<u8> = words[..3].iter().flat_map(|word| word.to_le_bytes()).collect();
     let found: Vec<usize> = (0..memory.len() - pattern.len())
         .filter(|&at| memory[at..].starts_with(&pattern))
         .collect();
-    // The state, and what is left of the answer that it was sent in, which nobody reads again.
+    // The link overwrites its own bank before anybody reads it.
     assert!((1..=2).contains(&found.len()), "the state in {size} bytes: {found:?}");
     for at in found {
         debugger.write(address + at as u64, &[memory[at] ^ 0x01]);
