@@ -98,6 +98,8 @@ pub fn build(
         .args(["--target", triple, "--bin", program, "--target-dir"])
         .arg(&folder)
         .envs(variables.iter().copied())
+        // Built in increments, less is inlined: cycles would depend on the caller's environment.
+        .env("CARGO_INCREMENTAL", "0")
         .current_dir(root())
         .output()
         .map_err(|source| TargetError::Start { program: "cargo".to_owned(), source })?;
