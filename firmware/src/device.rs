@@ -201,6 +201,8 @@ pub struct Device<'q> {
     readings: Readings,
     /// How long ago these came, µs.
     readings_age_us: u64,
+    /// They came for this tick.
+    readings_are_new: bool,
     /// A row was not what the link had put into its queue.
     row_lost: bool,
     was_armed: bool,
@@ -221,6 +223,7 @@ impl<'q> Device<'q> {
             demand: Aged::new(NO_DEMAND),
             readings: Readings::default(),
             readings_age_us: 0,
+            readings_are_new: false,
             row_lost: false,
             was_armed: false,
             in_time: true,
@@ -261,6 +264,7 @@ impl<'q> Device<'q> {
             supply_mv: self.readings.supply_mv,
             // Old news is none.
             path_um: self.readings.path_um.filter(|_| self.readings_age_us <= readings_us),
+            path_is_new: core::mem::take(&mut self.readings_are_new),
             in_time: self.in_time,
             memory_is_intact,
             // The controller knows.
@@ -377,6 +381,7 @@ impl<'q> Device<'q> {
             Order::Readings(readings) => {
                 self.readings = readings;
                 self.readings_age_us = 0;
+                self.readings_are_new = true;
                 Outcome::Done
             }
             Order::Acknowledge(fault) => armed(self.controller.acknowledge(fault)),

@@ -53,7 +53,8 @@ pub struct Limits {
     pub supply_mv: (u32, u32),
     /// Path length of the muscle, µm.
     pub path_um: (i32, i32),
-    /// Greatest speed of the path, mm/s; 1 or more.
+    /// Greatest speed of the path from one reading to the next, mm/s; 1 or more. The time between two readings is that
+    /// between the ticks that they came in, and a µm is always allowed.
     pub path_speed_mm_s: u32,
     /// Longest time that a reading may stay the same to the µm, ms of stimulation; a tick to `session_ms`. A sensor
     /// has noise.

@@ -22,10 +22,12 @@ pub struct Pulses<'q, D, P> {
     gate: &'q Gate,
     /// For how long a tick's permission holds, µs.
     patience_us: u32,
-    /// Since the last one, µs.
+    /// The most time since the last one, µs.
     age_us: u32,
     /// A pulse is being put out.
     pulsing: bool,
+    /// How long the step lasts, or lasted, that the timer's last interrupt began, µs.
+    lasted_us: u32,
     /// What the timer's next interrupt begins.
     next: Step,
     /// For how long electrodes of a pulse that was cut short stay connected to each other, µs; none if there are
@@ -60,6 +62,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             patience_us,
             age_us: 0,
             pulsing: false,
+            lasted_us: Self::FIRST_US,
             next: Step::IDLE,
             discharge_us: None,
         }
@@ -71,12 +74,13 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     ///
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
-        self.age_us = self.age_us.saturating_add(self.next.duration_us);
-        if self.gate.take_renewed() {
-            self.age_us = 0;
-        }
-        // Before the step begins: a phase that may not end as it should does not begin.
-        let is_overdue = self.age_us > self.patience_us && !self.schedule.is_idle();
+        // A permission that is seen now came at any time of the step that has just ended.
+        let before_us = if self.gate.take_renewed() { 0 } else { self.age_us };
+        self.age_us = before_us.saturating_add(self.lasted_us);
+        self.lasted_us = self.next.duration_us;
+        // Before the step begins: one that would last for longer than the permission does not.
+        let ends_us = self.age_us.saturating_add(self.next.duration_us);
+        let is_overdue = ends_us > self.patience_us && !self.schedule.is_idle();
         if is_overdue {
             self.gate.set_late(true);
         }

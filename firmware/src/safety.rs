@@ -25,6 +25,8 @@ pub struct Observed {
     pub supply_mv: u32,
     /// Path length, µm; none if the sensor gave no number, or none lately.
     pub path_um: Option<i32>,
+    /// It was read since the last tick, also where it says the same as before.
+    pub path_is_new: bool,
     /// The last tick began and finished in time.
     pub in_time: bool,
     /// State and parameters are what the last tick left.
@@ -111,6 +113,8 @@ pub struct Supervisor {
     /// Of stimulation while the reading stayed the same.
     stuck_us: u64,
     path_before: Option<i32>,
+    /// Since that was read.
+    path_age_us: u64,
 }
 
 impl Supervisor {
@@ -134,6 +138,7 @@ impl Supervisor {
             rest_us: 0,
             stuck_us: 0,
             path_before: None,
+            path_age_us: 0,
         })
     }
 
@@ -249,7 +254,7 @@ impl Supervisor {
         stimulates: bool,
     ) -> Option<Fault> {
         count(&mut self.silence_us, !observed.host_heard, self.tick_us);
-        let sensor = self.wrong_sensor(limits, observed.path_um, stimulates);
+        let sensor = self.wrong_sensor(limits, observed, stimulates);
         let faults = [
             (!observed.memory_is_intact).then_some(Fault::Checksum),
             (!observed.output_answers).then_some(Fault::Output),
@@ -265,23 +270,28 @@ impl Supervisor {
     fn wrong_sensor(
         &mut self,
         limits: &Limits,
-        path_um: Option<i32>,
+        observed: &Observed,
         stimulates: bool,
     ) -> Option<Fault> {
-        let Some(path) = path_um else { return Some(Fault::SensorMissing) };
+        self.path_age_us = self.path_age_us.saturating_add(self.tick_us.into());
+        let Some(path) = observed.path_um else { return Some(Fault::SensorMissing) };
         // The first number there is moves from nowhere.
         let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
         self.path_before = Some(path);
+        // mm/s times µs are nm. A µm is the least that a reading can tell.
+        let most_moved =
+            u64::from(limits.path_speed_mm_s).saturating_mul(self.path_age_us).max(1000);
+        if observed.path_is_new || moved > 0 {
+            self.path_age_us = 0;
+        }
         let (least, most) = limits.path_um;
         // Pauses of stimulation do not count, and do not make a sensor work.
         if moved > 0 || stimulates {
             count(&mut self.stuck_us, moved == 0, self.tick_us);
         }
-        // mm/s times µs are thousandths of µm.
-        let most_moved = u64::from(limits.path_speed_mm_s) * u64::from(self.tick_us) / 1000;
         if !(least..=most).contains(&path) {
             Some(Fault::SensorRange)
-        } else if u64::from(moved) > most_moved {
+        } else if u64::from(moved) * 1000 > most_moved {
             Some(Fault::SensorJump)
         } else if self.stuck_us > micros(limits.stuck_ms) {
             Some(Fault::SensorStuck)

@@ -8,6 +8,7 @@
 //! counts is what was put out: how often, and how, a host asks makes no difference.
 
 use crate::guarded::Guarded;
+use crate::limits::SHORTEST_TICK_US;
 use crate::plan::{Plan, Train};
 use crate::stimulus::LEAST_PHASE_US;
 use crate::waveform::{Phase, Pulse};
@@ -22,10 +23,11 @@ pub struct Step {
 }
 
 impl Step {
-    /// No step is longer, µs: at its end, whoever drives the schedule looks for what has changed.
-    pub const LONGEST_US: u32 = 500;
+    /// No step is longer, µs: a quarter of the shortest tick. At its end, whoever drives the schedule looks for what has
+    /// changed, and whether the tick still allows current.
+    pub const LONGEST_US: u32 = SHORTEST_TICK_US / 4;
     /// Nothing for a while.
-    pub const IDLE: Self = Self { output: None, duration_us: 250 };
+    pub const IDLE: Self = Self { output: None, duration_us: Self::LONGEST_US };
 }
 
 /// What a channel has put out, which outlasts every halt: off and on again is no way round a frequency.
@@ -225,7 +227,7 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
             // Not exactly when it is due, if that is very soon: a step has its shortest length.
             Some((_, _, rhythm)) => {
                 let due_us = rhythm.due_us.unsigned_abs();
-                let duration_us = due_us.clamp(LEAST_PHASE_US, Step::IDLE.duration_us);
+                let duration_us = due_us.clamp(LEAST_PHASE_US, Step::LONGEST_US);
                 Step { output: None, duration_us }
             }
             None => Step::IDLE,

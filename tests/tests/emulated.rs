@@ -57,7 +57,8 @@ fn cases() -> Vec<(Fault, Request)> {
             readings(Readings { impedance_ohm: [None, None, Some(99), None], ..READINGS }),
         ),
         (Fault::SensorMissing, readings(Readings { path_um: None, ..READINGS })),
-        (Fault::SensorJump, readings(Readings { path_um: Some(161_001), ..READINGS })),
+        // 0.29 m, for which a path takes longer than a reading may be old.
+        (Fault::SensorJump, readings(Readings { path_um: Some(450_000), ..READINGS })),
         (Fault::Stopped, Request::Stop),
     ]
 }

@@ -132,6 +132,7 @@ impl Bench {
             supply_mv: 3700,
             // With the noise that a sensor has.
             path_um: Some(160_000 + (self.tick % 3) as i32),
+            path_is_new: true,
             in_time: true,
             memory_is_intact: true,
             output_answers: true,

@@ -427,12 +427,12 @@ fn a_tick_that_hung_between_pulses_is_a_fault() {
 /// longer than the longest step leaves no piece that is shorter than the shortest.
 #[test]
 fn steps_of_two_pulses_that_are_due_at_once() {
-    for width_us in [200, 500, 501, 510, 519, 520, 521, 1000] {
+    for width_us in [100, 125, 126, 135, 144, 145, 146, 250, 251, 270, 271, 1000] {
         let one = Stimulus { width_us, frequency_tenths_pps: 100, ..stimulus(5_000) };
         let plan = Plan::<4>::new(&[Some(one), Some(one), None, None], &SCALE, 50_000);
         let mut schedule = Schedule::<4>::new();
         schedule.follow(&Guarded::new(plan.expect("a plan")));
-        let steps: Vec<Step> = std::iter::repeat_with(|| schedule.advance()).take(24).collect();
+        let steps: Vec<Step> = std::iter::repeat_with(|| schedule.advance()).take(60).collect();
         let pieces = |channel: usize, counts: bool| -> Vec<u32> {
             let of = |step: &&Step| {
                 step.output.is_some_and(|(at, phase)| at == channel && (phase.counts > 0) == counts)
@@ -441,11 +441,14 @@ fn steps_of_two_pulses_that_are_due_at_once() {
         };
         let width = u32::from(width_us);
         for channel in [0, 1] {
-            // Both phases: each in one piece, or in two.
+            // Both phases: each in one piece, or in several, of which the last is as long as the shortest phase.
             let phase = match width {
-                ..=500 => vec![width],
-                501..=520 => vec![width - 20, 20],
-                _ => vec![500, width - 500],
+                ..=125 => vec![width],
+                126..=145 => vec![width - 20, 20],
+                146..=250 => vec![125, width - 125],
+                251..=270 => vec![125, width - 145, 20],
+                271 => vec![125, 125, 21],
+                _ => vec![125; 8],
             };
             assert_eq!(pieces(channel, true), [phase.clone(), phase].concat(), "{width_us}");
             assert_eq!(pieces(channel, false), [20, 30, 20, 20], "{width_us}");

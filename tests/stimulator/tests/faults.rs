@@ -206,8 +206,9 @@ fn an_output_that_stops_answering_is_seen_by_the_next_step() {
             electrodes.broken_converter = break_it == 0;
             electrodes.broken_pins = break_it == 1;
         }
-        // Nothing that could still be put in neutral is left as it was; the next tick latches.
-        for _ in 0..2 {
+        // Nothing that could still be put in neutral is left as it was; the next tick latches. Pins are spoken to where
+        // they turn, which is the third step: what is left of the phase, gap, turning.
+        for _ in 0..3 {
             bench.run_out();
         }
         let electrodes = bench.electrodes.borrow();
@@ -230,11 +231,11 @@ fn an_output_that_stops_answering_is_seen_by_the_next_step() {
 
 /// A tick that never ends sends no plans; the pulse timer does not need it to stop.
 #[test]
-fn a_tick_that_hangs_ends_in_neutral_within_three_ticks() {
+fn a_tick_that_hangs_ends_in_neutral_within_two_ticks() {
     let mut bench = Bench::running();
     bench.until_current();
     bench.hangs = true;
-    bench.flows(3);
+    bench.flows(2);
     assert_eq!(bench.flowing(), 0);
     assert!(!bench.flows(1000));
     // When it comes back, it latches what has happened, and can be armed again.
@@ -307,6 +308,7 @@ fn limits_are_the_same_times_at_every_tick_rate() {
         impedance_ohm: [None; CHANNELS],
         supply_mv: 3700,
         path_um: Some(path_um),
+        path_is_new: true,
         in_time: true,
         memory_is_intact: true,
         output_answers: true,

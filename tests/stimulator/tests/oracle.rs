@@ -133,6 +133,8 @@ struct World {
     state: State,
     late: bool,
     path_um: i32,
+    /// When that was read.
+    path_read_us: u64,
     seen: HashMap<Fault, u64>,
 }
 
@@ -174,6 +176,7 @@ impl World {
             state: State::Latched(Fault::Boot),
             late: false,
             path_um: 200_000,
+            path_read_us: 0,
             seen: HashMap::new(),
         };
         world.tick();
@@ -273,8 +276,14 @@ impl World {
             }
             Some(Request::Readings(readings)) => {
                 let (least, most) = LIMITS.supply_mv;
-                let jump = readings.path_um.is_none_or(|path| path.abs_diff(self.path_um) > 1000);
-                self.path_um = readings.path_um.unwrap_or(self.path_um);
+                // 1 m/s is a µm in a µs.
+                let most_um = now_us - self.path_read_us;
+                let jump = readings
+                    .path_um
+                    .is_none_or(|path| u64::from(path.abs_diff(self.path_um)) > most_um);
+                if let Some(path_um) = readings.path_um {
+                    (self.path_um, self.path_read_us) = (path_um, now_us);
+                }
                 self.patient.reads(now_us);
                 if !(least..=most).contains(&readings.supply_mv) {
                     self.patient.ends("the supply");
@@ -390,7 +399,7 @@ fn readings(world: &World, chance: &mut Chance) -> Readings {
         supply_mv: if fails(chance) { 2500 } else { 3700 },
         path_um: match () {
             () if fails(chance) => None,
-            () if fails(chance) => Some(world.path_um + 2000),
+            () if fails(chance) => Some(world.path_um + chance.below(40_000) as i32),
             () if fails(chance) => Some(world.path_um),
             () => Some(path),
         },
