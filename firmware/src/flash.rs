@@ -1,11 +1,11 @@
 //! Flash that a controller writes, as its manual (RM0090, 3.6) and its data sheet (DS8626) have it.
 //!
 //! Flags of an earlier error are cleared before anything is begun, for with one of them set the next operation
-//! fails, too. Each wait ends. What was erased is not read from a cache.
+//! fails, too. Each wait ends. What was erased or written is not read from a cache.
 
 use crate::watchdog::MOST_CHANGE_MS;
 use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
 /// Erasing a sector of 128 KB, ms: 2,000 typically, 4,000 at most where bytes are written one by one (x8), as any
@@ -15,7 +15,7 @@ pub const MOST_ERASE_MS: u32 = 4_000;
 const MOST_WRITE_US: u32 = 100;
 /// From the request to store something until that is done, ms, however little of its time the part leaves.
 pub const MOST_STORE_MS: u32 =
-    MOST_ERASE_MS + (crate::storage::MOST_SLOT as u32 * MOST_WRITE_US).div_ceil(1000);
+    MOST_ERASE_MS + (crate::storage::MOST_WRITTEN as u32 * MOST_WRITE_US).div_ceil(1000);
 /// Longest wait until a watchdog is patient, ms: ticks are 2 ms at most.
 const MOST_PATIENCE_MS: u32 = MOST_CHANGE_MS + 10;
 
@@ -158,6 +158,11 @@ impl<C: FlashController> NorFlash for Flash<C> {
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         Self::check(offset, bytes.len())?;
-        self.operate(|controller| controller.write(offset, bytes))
+        let written = self.operate(|controller| controller.write(offset, bytes));
+        self.0.flush_caches();
+        written
     }
 }
+
+/// Without checksums of its own: a byte that was written can lose more of its bits.
+impl<C: FlashController> MultiwriteNorFlash for Flash<C> {}

@@ -1,7 +1,7 @@
 //! A memory that forgets, for where there is no flash: an emulator, a test.
 
 use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
 /// Bytes of RAM that behave as flash does.
@@ -71,3 +71,5 @@ impl<const BYTES: usize> NorFlash for RamFlash<BYTES> {
         Ok(())
     }
 }
+
+impl<const BYTES: usize> MultiwriteNorFlash for RamFlash<BYTES> {}

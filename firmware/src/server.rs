@@ -12,7 +12,7 @@ use crate::randomness::Randomness;
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
 use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::MultiwriteNorFlash;
 use heapless::{Deque, Vec};
 use vm_nostd::TimeStep;
 
@@ -83,7 +83,7 @@ pub struct Server<'q, F, R> {
     out: &'q mut Out,
 }
 
-impl<'q, F: NorFlash, R: Randomness> Server<'q, F, R> {
+impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     /// Takes over what is stored, and gives the tick the muscles that are whole and can be built.
     pub fn new(
         room: &'q mut ServerRoom,

@@ -2,18 +2,21 @@
 //!
 //! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases the slot that
 //! does not count, writes its content and then its header; only that makes it the newer one. Wherever power is
-//! lost, the slot that counted before still does.
+//! lost, the slot that counted before still does. Whatever fails on the way, a slot that is not known to hold what it
+//! should is made not to count before an error is returned.
 
 use crate::link::VERSION;
 use crc::{CRC_32_ISO_HDLC, Crc};
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::MultiwriteNorFlash;
 use serde::{Deserialize, Serialize};
 
 /// Longest content, bytes.
 pub const MOST_STORED: usize = 2048;
 const HEADER: usize = 16;
-/// Bytes that storing writes at most.
-pub(crate) const MOST_SLOT: usize = HEADER + MOST_STORED;
+/// Of a slot.
+const MOST_SLOT: usize = HEADER + MOST_STORED;
+/// Bytes that storing writes at most: a slot, and another header where that fails.
+pub(crate) const MOST_WRITTEN: usize = MOST_SLOT + HEADER;
 /// Whose it is, and of which messages: other versions lay a muscle out in another way.
 const MAGIC: u32 = 0x4D53_4D00 + VERSION as u32;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
@@ -31,6 +34,8 @@ pub enum NotStored {
     Write,
     /// It was written, and is not what is read.
     Kept,
+    /// Memory failed more than once: what the next boot restores may be this or what was stored before.
+    Unknown,
 }
 
 /// A slot that is whole.
@@ -51,7 +56,7 @@ pub struct Slots<'b, F> {
     buffer: &'b mut SlotBuffer,
 }
 
-impl<'b, F: NorFlash> Slots<'b, F> {
+impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
     /// Takes over a memory, as it is.
     pub fn new(memory: F, buffer: &'b mut SlotBuffer) -> Self {
         Self { memory, buffer }
@@ -70,7 +75,8 @@ impl<'b, F: NorFlash> Slots<'b, F> {
         self.buffer.get(HEADER..HEADER + length)
     }
 
-    /// Stores a content; what was stored before counts until this is whole, and after an error still does.
+    /// Stores a content; what was stored before counts until this is whole, and after an error still does, unless that
+    /// is [`NotStored::Unknown`].
     pub fn store(&mut self, content: &[u8]) -> Result<(), NotStored> {
         if content.len() > MOST_STORED {
             return Err(NotStored::TooLong);
@@ -100,13 +106,30 @@ impl<'b, F: NorFlash> Slots<'b, F> {
         self.memory.erase(start, start + self.half()).map_err(|_| NotStored::Erase)?;
         let written = self.buffer.get(HEADER..HEADER + padded).ok_or(NotStored::TooLong)?;
         self.memory.write(start + HEADER as u32, written).map_err(|_| NotStored::Write)?;
+        // With its header it counts.
+        self.seal(start, slot, generation, content)
+            .map_err(|error| if self.unseal(start, slot) { error } else { NotStored::Unknown })
+    }
+
+    /// Writes the header, and reads everything again: a worn page may keep something else.
+    fn seal(
+        &mut self,
+        start: u32,
+        slot: u32,
+        generation: u32,
+        content: &[u8],
+    ) -> Result<(), NotStored> {
         let header = self.buffer.get(..HEADER).ok_or(NotStored::TooLong)?;
         self.memory.write(start, header).map_err(|_| NotStored::Write)?;
-
-        // Read again: a worn page may keep something else.
         let kept = self.whole(slot)?.ok_or(NotStored::Kept)?;
         let same = self.buffer.get(HEADER..HEADER + kept.length) == Some(content);
         if kept.generation == generation && same { Ok(()) } else { Err(NotStored::Kept) }
+    }
+
+    /// Clears every bit of a header. Whether it is known that the slot does not count.
+    fn unseal(&mut self, start: u32, slot: u32) -> bool {
+        let _what_is_read_decides = self.memory.write(start, &[0; HEADER]);
+        matches!(self.whole(slot), Ok(None))
     }
 
     fn half(&self) -> u32 {

@@ -3,7 +3,7 @@
 use super::{CORE_CLOCK, watchdog};
 use crate::board::pac::{DWT, FLASH};
 use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use firmware::RamFlash;
 use firmware::flash::{Flash, FlashController};
@@ -148,3 +148,5 @@ impl NorFlash for Memory {
         }
     }
 }
+
+impl MultiwriteNorFlash for Memory {}

@@ -193,7 +193,8 @@ pub enum Refusal<'a> {
         /// How many.
         room: u32,
     },
-    /// Memory did not keep what it was given; what was stored before is still there.
+    /// Memory did not keep what it was given. What was stored before still is, and the next boot restores it, unless the
+    /// reason is [`NotStored::Unknown`].
     NotStored(NotStored),
     /// Supervision did not go along.
     NotArmed(NotArmed),

@@ -332,13 +332,16 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::Armed => "stimulation is armed".to_owned(),
         Refusal::Empty => "no muscle is at that place".to_owned(),
         Refusal::NoRoom { room } => format!("room for {room} rows"),
+        Refusal::NotStored(NotStored::Unknown) => {
+            "memory failed twice; the next boot restores this or what was stored before".to_owned()
+        }
         Refusal::NotStored(reason) => {
             let reason = match reason {
                 NotStored::TooLong => "it has no room for it",
                 NotStored::Read => "it could not be read",
                 NotStored::Erase => "it was not erased",
                 NotStored::Write => "it was not written",
-                NotStored::Kept => "it did not keep it",
+                NotStored::Kept | NotStored::Unknown => "it did not keep it",
             };
             format!("memory: {reason}; what was stored before still is")
         }

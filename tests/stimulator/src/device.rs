@@ -1,7 +1,7 @@
 //! The whole firmware but its chip, in this process: a line for the host's end of the link.
 
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::MultiwriteNorFlash;
 use firmware::safety::Fault;
 use firmware::{
     Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, RamFlash, Randomness,
@@ -47,7 +47,7 @@ pub struct InProcess<F> {
     flowed: u16,
 }
 
-impl<F: NorFlash> InProcess<F> {
+impl<F: MultiwriteNorFlash> InProcess<F> {
     /// At boot, with what its memory holds.
     pub fn boot(memory: F) -> Self {
         Self::boot_with(memory, LIMITS)
@@ -166,7 +166,7 @@ impl<F: NorFlash> InProcess<F> {
     }
 }
 
-impl<F: NorFlash> Read for InProcess<F> {
+impl<F: MultiwriteNorFlash> Read for InProcess<F> {
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize> {
         for _ in 0..PATIENCE {
             let mut length = 0;
@@ -185,7 +185,7 @@ impl<F: NorFlash> Read for InProcess<F> {
     }
 }
 
-impl<F: NorFlash> Write for InProcess<F> {
+impl<F: MultiwriteNorFlash> Write for InProcess<F> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
         self.arriving.extend(bytes);
         Ok(bytes.len())

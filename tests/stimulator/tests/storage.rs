@@ -1,7 +1,7 @@
 //! Power that is lost at any byte of a write, or of an erasure: what was stored before is still there.
 
 use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use firmware::link::{Mode, Request, Upload};
 use firmware::{MOST_STORED, MUSCLE, NotStored, RamFlash, Slots};
@@ -74,6 +74,8 @@ impl NorFlash for Cut {
     }
 }
 
+impl MultiwriteNorFlash for Cut {}
+
 fn content(seed: u8, length: usize) -> Vec<u8> {
     (0..length).map(|index| seed.wrapping_mul(31).wrapping_add(index as u8)).collect()
 }
@@ -99,8 +101,9 @@ fn power_that_is_lost_at_any_byte_leaves_the_old_content_or_the_new_one() {
                 let mut buffer = [0; _];
                 let mut slots = Slots::new(slots.into_memory().memory, &mut buffer);
                 let kept = slots.load().expect("a content").to_vec();
-                // An error may come too late, but never success too early.
+                // An error may come too late, and says so; success never comes too early.
                 if kept == new {
+                    assert!(matches!(stored, Ok(()) | Err(NotStored::Unknown)), "{stored:?}");
                     kept_new += 1;
                 } else {
                     assert_eq!(kept, old, "{left} of {all}");
@@ -182,6 +185,8 @@ impl NorFlash for Unreadable {
         self.memory.write(offset, bytes).map_err(|_| Gone)
     }
 }
+
+impl MultiwriteNorFlash for Unreadable {}
 
 /// What cannot be read for a moment may be what counts: nothing is erased then.
 #[test]
