@@ -119,7 +119,7 @@ impl<'q> Controller<'q> {
         let (Some(scale), Some(limits)) = (scale, self.supervisor.limits()) else {
             return self.supervisor.fail(Fault::Checksum);
         };
-        match Plan::new(&requested.stimuli, &scale, limits.rise_ua) {
+        match Plan::new(&requested.stimuli, &scale, limits) {
             Err(_) => self.supervisor.fail(Fault::Request),
             Ok(plan) if plan == self.told => (),
             // The pulse timer takes several in a tick; it has stopped if there is no room.

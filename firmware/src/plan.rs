@@ -1,10 +1,10 @@
 //! What all channels do together, checked before the pulse timer has anything to do with it.
 
 use crate::guarded::{Guarded, Sum};
-use crate::limits::SHORTEST_TICK_US;
+use crate::limits::{Limits, SHORTEST_TICK_US};
 use crate::safety::CHANNELS;
 use crate::schedule::Step;
-use crate::stimulus::{LONGEST_PULSE_US, Scale, Stimulus, StimulusError, within};
+use crate::stimulus::{LONGEST_PULSE_US, Scale, Stimulus, StimulusError, period_us, within};
 use crate::waveform::Pulse;
 use heapless::spsc::Queue;
 use vm_nostd::Checksum;
@@ -57,26 +57,30 @@ pub struct Plan<const CHANNELS: usize> {
     pub(crate) trains: [Option<Train>; CHANNELS],
     /// How many counts an amplitude may rise by from one pulse of a channel to the next.
     pub(crate) rise: u16,
+    /// No pulse of a channel comes sooner after the one before, µs, also where it makes up for waiting.
+    pub(crate) least_period_us: u32,
 }
 
 impl<const CHANNELS: usize> Plan<CHANNELS> {
     /// No pulses on any channel.
-    pub const NOTHING: Self = Self { trains: [None; CHANNELS], rise: 0 };
+    pub const NOTHING: Self = Self { trains: [None; CHANNELS], rise: 0, least_period_us: 0 };
 
     /// Whether no channel has a train.
     pub(crate) fn is_nothing(&self) -> bool {
         self.trains.iter().all(Option::is_none)
     }
 
-    /// The plan of what is wanted of each channel, whose amplitudes may rise by `rise_ua` (µA) from pulse to pulse.
-    /// Refused with field, value and limit if the stimulator cannot do one of them, or not all of them one at a
-    /// time.
+    /// The plan of what is wanted of each channel, whose amplitudes rise, and whose pulses follow each other, no
+    /// faster than the limits say. Refused with field, value and limit if the stimulator cannot do one of them, or
+    /// not all of them one at a time.
     pub fn new(
         wanted: &[Option<Stimulus>; CHANNELS],
         scale: &Scale,
-        rise_ua: u32,
+        limits: &Limits,
     ) -> Result<Self, StimulusError> {
-        let mut plan = Self { rise: scale.counts_of(rise_ua), ..Self::NOTHING };
+        let rise = scale.counts_of(limits.rise_ua);
+        let least_period_us = period_us(limits.frequency_tenths_pps);
+        let mut plan = Self { rise, least_period_us, ..Self::NOTHING };
         let mut load = 0;
         for (train, stimulus) in plan.trains.iter_mut().zip(wanted) {
             let Some(stimulus) = stimulus else { continue };
@@ -94,8 +98,9 @@ impl<const CHANNELS: usize> Plan<CHANNELS> {
 
 impl<const CHANNELS: usize> Sum for Plan<CHANNELS> {
     fn sum(&self, checksum: &mut Checksum) {
-        let Self { trains, rise } = self;
+        let Self { trains, rise, least_period_us } = self;
         trains.sum(checksum);
         checksum.add((*rise).into());
+        checksum.add(*least_period_us);
     }
 }

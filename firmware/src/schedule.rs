@@ -2,7 +2,8 @@
 //!
 //! Driven by a hardware timer: [`Schedule::advance`] says what to put out and when to be called again. A pulse that
 //! is due while another is running starts when that has ended: it waits for at most one pulse of every other channel.
-//! The one after it is due as if it had not been late, but never closer than half a period.
+//! The one after it is due as if it had not been late, but never closer than half a period, nor than the limit on
+//! frequencies allows.
 //!
 //! An amplitude rises from nothing, and by no more from one pulse of a channel to the next than the plan says. What
 //! counts is what was put out: how often, and how, a host asks makes no difference.
@@ -214,9 +215,11 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         match first {
             Some((channel, train, rhythm)) if rhythm.due_us <= 0 => {
                 let pulse = train.pulse(rhythm.reach(plan.rise, train.width_us));
-                // What was late makes up for it in part: two pulses are never closer than half a period.
+                // What was late makes up for it in part: two pulses are never closer than half a period, nor than
+                // the greatest frequency has them.
                 let period_us = train.period_us as i32;
-                rhythm.due_us = (rhythm.due_us + period_us).max(period_us / 2);
+                let closest_us = (period_us / 2).max(plan.least_period_us as i32);
+                rhythm.due_us = (rhythm.due_us + period_us).max(closest_us);
                 rhythm.since_us = 0;
                 rhythm.counts = pulse.counts();
                 rhythm.width_us = train.width_us;
@@ -244,6 +247,7 @@ fn duration(pulse: &Pulse, phase: usize) -> u32 {
 mod tests {
     use super::{Schedule, Step};
     use crate::guarded::Guarded;
+    use crate::limits::Limits;
     use crate::plan::Plan;
     use crate::stimulus::{Scale, Stimulus};
 
@@ -257,7 +261,8 @@ mod tests {
             frequency_tenths_pps: 400,
             recovery: 1,
         };
-        let plan = Plan::new(&[Some(stimulus), None], &SCALE, 2_000).expect("a legal command");
+        let plan =
+            Plan::new(&[Some(stimulus), None], &SCALE, &Limits::SURFACE).expect("a legal command");
         Guarded::new(plan)
     }
 

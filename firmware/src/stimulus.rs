@@ -124,10 +124,15 @@ pub(crate) fn within(
     }
 }
 
+/// Of so many pulses in ten seconds, µs; rounded up.
+pub(crate) fn period_us(frequency_tenths_pps: u16) -> u32 {
+    10_000_000_u32.div_ceil(frequency_tenths_pps.max(1).into())
+}
+
 impl Stimulus {
-    /// From the start of a pulse to that of the next, µs; rounded down.
+    /// From the start of a pulse to that of the next, µs; rounded up, or there would be a pulse too many in a second.
     pub fn period_us(&self) -> u32 {
-        10_000_000 / u32::from(self.frequency_tenths_pps.max(1))
+        period_us(self.frequency_tenths_pps)
     }
 
     /// From the start of a pulse until another may begin, settling included, µs.

@@ -3,6 +3,7 @@
 use super::Pulses;
 use crate::gate::Gate;
 use crate::guarded::Guarded;
+use crate::limits::Limits;
 use crate::output::{Bridge, OutputStage};
 use crate::plan::{Plan, PlanQueue};
 use crate::stimulus::{Scale, Stimulus};
@@ -48,7 +49,8 @@ fn a_halt_throws_away_the_plans_that_wait() {
         frequency_tenths_pps: 400,
         recovery: 1,
     };
-    let plan = Plan::new(&[Some(stimulus), None, None, None], &scale, 2_000).expect("a plan");
+    let plan =
+        Plan::new(&[Some(stimulus), None, None, None], &scale, &Limits::SURFACE).expect("a plan");
     let mut queue = PlanQueue::new();
     let gate = Gate::new();
     let (mut give, take) = queue.split();

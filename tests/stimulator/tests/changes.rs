@@ -429,7 +429,8 @@ fn a_tick_that_hung_between_pulses_is_a_fault() {
 fn steps_of_two_pulses_that_are_due_at_once() {
     for width_us in [100, 125, 126, 135, 144, 145, 146, 250, 251, 270, 271, 1000] {
         let one = Stimulus { width_us, frequency_tenths_pps: 100, ..stimulus(5_000) };
-        let plan = Plan::<4>::new(&[Some(one), Some(one), None, None], &SCALE, 50_000);
+        let limits = Limits { rise_ua: 50_000, ..BOARD };
+        let plan = Plan::<4>::new(&[Some(one), Some(one), None, None], &SCALE, &limits);
         let mut schedule = Schedule::<4>::new();
         schedule.follow(&Guarded::new(plan.expect("a plan")));
         let steps: Vec<Step> = std::iter::repeat_with(|| schedule.advance()).take(60).collect();

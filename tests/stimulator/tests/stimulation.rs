@@ -4,7 +4,7 @@
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTransaction};
 use firmware::{
-    Bridge, Guarded, LEAST_PHASE_US, OutputError, OutputStage, Plan, Pulse, Schedule, Step,
+    Bridge, Guarded, LEAST_PHASE_US, Limits, OutputError, OutputStage, Plan, Pulse, Schedule, Step,
     Stimulus, StimulusError,
 };
 use model_tests::muscles::config;
@@ -28,6 +28,10 @@ fn pass(stage: &mut Stage, shared: &Shared, step: &Step) {
     }
 }
 
+/// Full amplitude from the first pulse on, and the most pulses that there can be.
+const FASTEST: Limits =
+    Limits { rise_ua: SCALE.full_scale_ua, frequency_tenths_pps: 5000, ..Limits::SURFACE };
+
 /// A schedule whose channels are commanded one by one.
 #[derive(Default)]
 struct Commanded {
@@ -40,8 +44,7 @@ impl Commanded {
     fn set(&mut self, channel: usize, stimulus: Option<Stimulus>) -> Result<(), StimulusError> {
         let mut wanted = self.wanted;
         wanted[channel] = stimulus;
-        // Full amplitude from the first pulse on.
-        let plan = Plan::new(&wanted, &SCALE, SCALE.full_scale_ua)?;
+        let plan = Plan::new(&wanted, &SCALE, &FASTEST)?;
         self.schedule.follow(&Guarded::new(plan));
         self.wanted = wanted;
         Ok(())
