@@ -1,6 +1,6 @@
 //! A muscle in its place: what it is, where it is, and what stimulates it.
 
-use crate::device::TYPES;
+use crate::configuration::TYPES;
 use crate::guarded::Sum;
 use crate::link::{Electrode, MOST_WORDS, Mode, Refusal, RowInputs, RowOutputs, Upload};
 use crate::safety::CHANNELS;

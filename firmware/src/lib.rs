@@ -12,6 +12,7 @@
 #[cfg(any(test, feature = "explore"))]
 extern crate std;
 
+mod configuration;
 mod controller;
 mod deadline;
 mod device;
@@ -23,6 +24,7 @@ pub mod flash;
 mod gate;
 mod guarded;
 mod limits;
+mod lines;
 pub mod link;
 mod output;
 mod plan;
@@ -37,15 +39,18 @@ mod server;
 mod shared;
 mod stimulus;
 mod storage;
+mod uploads;
 pub mod watchdog;
 mod waveform;
 
+pub use configuration::{MUSCLES, TICK_US, TYPES};
 pub use controller::Controller;
 pub use deadline::Deadline;
-pub use device::{Banks, Device, Lines, LinkEnds, MUSCLES, TICK_US, TYPES, TickEnds};
+pub use device::Device;
 pub use gate::Gate;
 pub use guarded::{Guarded, Sum};
 pub use limits::{LimitError, Limits};
+pub use lines::{Banks, Lines, LinkEnds, TickEnds};
 pub use output::{Bridge, OutputError, OutputStage};
 pub use plan::{Plan, PlanQueue};
 pub use pulses::Pulses;

@@ -1,9 +1,9 @@
 //! The device's end of the link: below the tick, in no hurry.
 
-use crate::device::{Bank, LinkEnds, MUSCLES, Order, Outcome, Row, Stimuli, TYPES};
-use crate::driven::Driven;
+use crate::configuration::{MUSCLES, TYPES};
 use crate::gate::Gate;
 use crate::guarded::Guarded;
+use crate::lines::{Bank, LinkEnds, Order, Outcome, Row, Stimuli};
 use crate::link::{
     Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
     SessionNumber, Upload, encode,
@@ -11,13 +11,11 @@ use crate::link::{
 use crate::randomness::Randomness;
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
-use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
+use crate::storage::SlotBuffer;
+use crate::uploads::{Stored, Uploads};
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use heapless::{Deque, Vec};
 use vm_nostd::TimeStep;
-
-/// What outlasts a loss of power.
-type Stored = [Option<Upload>; MUSCLES];
 
 /// For the outcome of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,12 +65,8 @@ pub struct Server<'q, F, R> {
     session: Session,
     ends: LinkEnds<'q>,
     gate: &'q Gate,
-    slots: Slots<'q, F>,
+    uploads: Uploads<'q, F>,
     step: TimeStep,
-    uploads: &'q mut Stored,
-    /// As they were built.
-    built: &'q mut Bank,
-    restored: u8,
     waiting: Waiting,
     /// Number of the row that is due.
     row: u32,
@@ -94,20 +88,13 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         step: TimeStep,
     ) -> Self {
         let ServerRoom { receiver, stored, uploads, built, out } = room;
-        let mut slots = Slots::new(memory, stored);
-        if slots.load().and_then(|stored| take_uploads(stored, uploads)).is_none() {
-            *uploads = [None; MUSCLES];
-        }
         let mut server = Self {
             receiver,
             session: Session::new(),
             ends,
             gate,
-            slots,
+            uploads: Uploads::restore(memory, stored, uploads, built, step),
             step,
-            uploads,
-            built,
-            restored: 0,
             waiting: Waiting::Boot,
             row: 0,
             sequence: 0,
@@ -115,12 +102,8 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
             randomness,
             out,
         };
-        for (upload, built) in server.uploads.iter().zip(server.built.iter_mut()) {
-            *built = upload.as_ref().and_then(|upload| Driven::build(upload, step).ok());
-            server.restored += u8::from(built.is_some());
-        }
         if let Some(bank) = server.ends.spare.take() {
-            *bank = *server.built;
+            *bank = *server.uploads.built();
             server.give(Order::Rest(bank));
         }
         server
@@ -128,7 +111,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
 
     /// Gives the memory back.
     pub fn into_memory(self) -> F {
-        self.slots.into_memory()
+        self.uploads.into_memory()
     }
 
     /// Whether current may flow.
@@ -249,34 +232,15 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         self.only_disarmed()?;
         check_place(place)?;
         self.only_with_spare()?;
-        let driven = Driven::build(&upload, self.step)?;
         let index = usize::from(place);
-        if let Some(channel) = driven.channel() {
-            self.only_free(channel, Some(index))?;
-        }
-        self.store(index, &Some(upload))?;
-        if let (Some(slot), Some(built)) = (self.uploads.get_mut(index), self.built.get_mut(index))
-        {
-            (*slot, *built) = (Some(upload), Some(driven));
-        }
+        self.uploads.take(index, upload)?;
         Ok(Order::Load(index, self.spare()?))
-    }
-
-    /// Stores what is stored, with another upload at a place.
-    #[inline(never)]
-    fn store(&mut self, index: usize, upload: &Option<Upload>) -> Result<(), Refusal<'static>> {
-        let mut all = self.uploads.each_ref();
-        *all.get_mut(index).ok_or(Refusal::Empty)? = upload;
-        let mut bytes = [0; MOST_STORED];
-        let bytes = postcard::to_slice(&all, &mut bytes)
-            .map_err(|_| Refusal::NotStored(NotStored::TooLong))?;
-        self.slots.store(bytes).map_err(Refusal::NotStored)
     }
 
     /// A bank for the tick, with all muscles as they were built.
     fn spare(&mut self) -> Result<&'static mut Bank, Refusal<'static>> {
         let bank = self.ends.spare.take().ok_or(Refusal::NoRoom { room: 0 })?;
-        *bank = *self.built;
+        *bank = *self.uploads.built();
         Ok(bank)
     }
 
@@ -289,23 +253,10 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     fn drive(&mut self, stimuli: Stimuli) -> Result<Order, Refusal<'static>> {
         for (channel, stimulus) in (0..).zip(&stimuli) {
             if stimulus.is_some() {
-                self.only_free(channel, None)?;
+                self.uploads.only_free(channel, None)?;
             }
         }
         Ok(Order::Drive(Guarded::new(stimuli)))
-    }
-
-    /// Refuses a channel that the electrode of a muscle has, but of the one at place `own`.
-    fn only_free(&self, channel: u8, own: Option<usize>) -> Result<(), Refusal<'static>> {
-        let taken = self.built.iter().enumerate().find(|(place, driven)| {
-            let has = driven.as_ref().and_then(Driven::channel);
-            Some(*place) != own && has == Some(channel)
-        });
-        match taken {
-            // Places are few.
-            Some((place, _)) => Err(Refusal::ChannelTaken { channel, place: place as u8 }),
-            None => Ok(()),
-        }
     }
 
     #[inline(never)]
@@ -351,7 +302,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
             channels: CHANNELS as u8,
             // A step is 2 ms at most.
             tick_us: (self.step.seconds() * 1e6 + 0.5) as u32,
-            restored: self.restored,
+            restored: self.uploads.restored(),
         }
     }
 
@@ -393,15 +344,6 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
 fn session_number(random: u32, nonce: u32, before: SessionNumber) -> SessionNumber {
     let number = (random ^ nonce) | 1;
     if number == before { number.wrapping_add(2) } else { number }
-}
-
-/// Reads what is stored, all of it or nothing.
-fn take_uploads(stored: &[u8], uploads: &mut Stored) -> Option<()> {
-    let mut rest = stored;
-    for upload in uploads {
-        (*upload, rest) = postcard::take_from_bytes(rest).ok()?;
-    }
-    rest.is_empty().then_some(())
 }
 
 fn check_place(place: u8) -> Result<(), Refusal<'static>> {

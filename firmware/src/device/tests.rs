@@ -1,12 +1,14 @@
 //! What memory loses between the link and the pulse timer, and how old a request may be.
 
-use super::{Aged, Device, Lines, LinkEnds, MUSCLES, Order, Outcome, TICK_US};
+use super::{Aged, Device};
+use crate::configuration::{MUSCLES, TICK_US};
 use crate::controller::Controller;
 use crate::deadline::Deadline;
 use crate::driven::{Demand, Driven};
 use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::limits::Limits;
+use crate::lines::{Lines, LinkEnds, Order, Outcome};
 use crate::link::{Electrode, Mode, Readings, RowInputs, Upload};
 use crate::plan::{Plan, PlanQueue};
 use crate::rig::MUSCLE;
@@ -310,4 +312,18 @@ fn a_stop_while_nothing_is_armed_drops_no_row() {
     });
     assert_eq!(bench.device.rows - before, 9);
     assert_eq!(bench.state(), State::Latched(Fault::Stopped));
+}
+
+/// A host is there as long as it is heard, and no longer than its limit after that.
+#[test]
+fn a_host_that_is_not_heard_is_a_fault() {
+    let limits = Limits { readings_ms: 5_000, ..Limits::SURFACE.within_scale(&SCALE) };
+    let mut bench = Bench::armed(limits);
+    (0..99).for_each(|_| {
+        assert!(bench.device.tick(0));
+    });
+    assert!(bench.tick());
+    let ticks = (0..1_000).take_while(|_| bench.device.tick(0)).count();
+    assert_eq!(ticks, 100);
+    assert_eq!(bench.state(), State::Latched(Fault::Silence));
 }

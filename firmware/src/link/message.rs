@@ -1,6 +1,6 @@
 //! What host and device say to each other. Adding to an enumeration's end keeps the version; all else changes it.
 
-use crate::device::{MUSCLES, TYPES};
+use crate::configuration::{MUSCLES, TYPES};
 use crate::link::{Counters, LinkError, SessionNumber};
 use crate::safety::{CHANNELS, Fault, NotArmed, State};
 use crate::stimulus::{Stimulus, StimulusError};

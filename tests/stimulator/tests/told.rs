@@ -3,13 +3,27 @@
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use firmware::link::{Answer, Request};
+use firmware::link::{Answer, Electrode, Mode, Request, Upload};
 use firmware::{NotStored, RamFlash, Slots};
 use stimulator_tests::client::{Client, ClientError};
 use stimulator_tests::device::InProcess;
-use stimulator_tests::host::fes;
+use stimulator_tests::host::{STIMULUS, fes};
+use vm_nostd::{MuscleParams, RecruitmentCurveParams};
 
 const BYTES: usize = 8192;
+
+const ELECTRODE: Electrode = Electrode {
+    channel: 0,
+    curve: RecruitmentCurveParams {
+        threshold: 4e-3,
+        saturation: 12e-3,
+        chronaxie: 200e-6,
+        slope: 2.0,
+    },
+    width_us: 200,
+    gap_us: 40,
+    recovery: 1,
+};
 
 /// A memory of whose operations some fail: before they do anything, or when they are done.
 #[derive(Clone)]
@@ -183,4 +197,56 @@ fn an_upload_that_was_refused_is_not_there_after_a_boot() {
         }
     }
     assert!(refused > 10, "{refused}");
+}
+
+/// Memory with these two uploads, as another firmware may have left them.
+fn stored(uploads: &[Option<Upload>; 2]) -> RamFlash<BYTES> {
+    let mut bytes = [0; 2048];
+    let bytes = postcard::to_slice(uploads, &mut bytes).expect("room");
+    let mut buffer = [0; _];
+    let mut slots = Slots::new(RamFlash::new(), &mut buffer);
+    slots.store(bytes).expect("a memory");
+    slots.into_memory()
+}
+
+/// Boots: how many were restored, and which places have a muscle.
+fn boot(memory: RamFlash<BYTES>) -> (Client<InProcess<RamFlash<BYTES>>>, u8, [bool; 2]) {
+    let mut host = Client::new(InProcess::boot(memory));
+    let restored = host.greet().expect("a greeting").restored;
+    let there = [0, 1].map(|place| host.ask(&Request::State { place }).is_ok());
+    (host, restored, there)
+}
+
+/// What this firmware would refuse, it does not restore: of two electrodes on a channel the second.
+#[test]
+fn what_is_restored_could_have_been_uploaded() {
+    let of_channel =
+        |channel| Some(Upload { electrode: Some(Electrode { channel, ..ELECTRODE }), ..fes() });
+    let heavy = Some(Upload { muscle: MuscleParams { mass: -1.0, ..fes().muscle }, ..fes() });
+    let natural = Some(Upload { mode: Mode::Continuous, electrode: Some(ELECTRODE), ..fes() });
+    for (uploads, there) in [
+        ([of_channel(0), of_channel(1)], [true, true]),
+        ([of_channel(2), of_channel(2)], [true, false]),
+        ([of_channel(4), of_channel(3)], [false, true]),
+        ([heavy, of_channel(0)], [false, true]),
+        ([of_channel(0), natural], [true, false]),
+        ([None, of_channel(1)], [false, true]),
+    ] {
+        let (_, restored, are) = boot(stored(&uploads));
+        assert_eq!(are, there);
+        assert_eq!(usize::from(restored), there.iter().filter(|there| **there).count());
+    }
+    // A channel is free whose electrode was not restored, and does not come back with the next boot.
+    let (mut host, ..) = boot(stored(&[of_channel(2), of_channel(2)]));
+    let free = Some(STIMULUS);
+    host.order(&Request::Drive([None, None, None, free])).expect("a free channel");
+    assert!(host.order(&Request::Drive([None, None, free, None])).is_err());
+    let (mut host, ..) = boot(stored(&[of_channel(4), of_channel(3)]));
+    host.order(&Request::Upload { place: 1, upload: fes() }).expect("a muscle");
+    let memory = host.into_line().into_memory();
+    let mut buffer = [0; _];
+    let mut slots = Slots::new(memory, &mut buffer);
+    let uploads: [Option<Upload>; 2] =
+        postcard::from_bytes(slots.load().expect("a content")).expect("uploads");
+    assert_eq!(uploads, [None, Some(fes())]);
 }

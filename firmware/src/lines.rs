@@ -1,0 +1,149 @@
+//! What tick and link give each other: queues, and two banks of muscles. Neither ever waits for the other.
+
+use crate::configuration::MUSCLES;
+use crate::driven::Driven;
+use crate::guarded::{Guarded, Sum};
+use crate::link::{MOST_WORDS, Readings, Report, RowInputs, Traced};
+use crate::safety::{CHANNELS, Fault, NotArmed};
+use crate::shared::{Giver, Taker};
+use crate::stimulus::Stimulus;
+use heapless::Vec;
+use heapless::spsc::Queue;
+use vm_nostd::Checksum;
+
+/// Places for rows that wait for their tick, and for their outputs; a queue keeps one of them free.
+const WAITING: usize = 64;
+
+/// The muscles of all places. There are two that tick and link give each other, for a muscle is too large for a queue,
+/// and for the stack.
+pub(crate) type Bank = [Option<Driven>; MUSCLES];
+
+/// What the link asks of the tick.
+#[derive(Debug)]
+pub(crate) enum Order {
+    /// A place's muscle, of a bank that has it there.
+    Load(usize, &'static mut Bank),
+    /// All muscles of places that have one, at rest; rows count from 0.
+    Rest(&'static mut Bank),
+    Drive(Guarded<Stimuli>),
+    Readings(Readings),
+    Acknowledge(Fault),
+    Arm,
+    Stop,
+    Report,
+    Words(usize),
+}
+
+/// What the tick answers: one outcome for each order.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    Done,
+    /// The same, with a bank that the tick does not need.
+    Took(&'static mut Bank),
+    NotArmed(NotArmed),
+    Report(Report),
+    Words(Vec<u32, MOST_WORDS>),
+    Empty,
+}
+
+/// Inputs of each muscle in a tick.
+pub(crate) type Row = [RowInputs; MUSCLES];
+
+/// What is asked of each channel.
+pub(crate) type Stimuli = [Option<Stimulus>; CHANNELS];
+
+impl Sum for RowInputs {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { activation, path_length, stimulation_frequency } = *self;
+        let words = [activation, path_length, stimulation_frequency].map(f32::to_bits);
+        words.into_iter().for_each(|word| checksum.add(word));
+    }
+}
+
+/// Everything that goes between tick and link; neither ever waits for the other.
+pub struct Lines {
+    orders: Queue<Order, 2>,
+    outcomes: Queue<Outcome, 2>,
+    rows: Queue<Guarded<Row>, WAITING>,
+    traces: Queue<Traced, WAITING>,
+}
+
+/// Room for the muscles of the tick, and for those that the link gives it next: large, and never moved.
+pub struct Banks {
+    muscles: Bank,
+    spare: Bank,
+}
+
+impl Default for Banks {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Banks {
+    /// Without muscles.
+    pub const fn new() -> Self {
+        Self { muscles: [const { None }; MUSCLES], spare: [const { None }; MUSCLES] }
+    }
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Lines {
+    /// Empty.
+    pub const fn new() -> Self {
+        Self {
+            orders: Queue::new(),
+            outcomes: Queue::new(),
+            rows: Queue::new(),
+            traces: Queue::new(),
+        }
+    }
+
+    /// The tick's ends and the link's, which give each other two banks of muscles.
+    pub fn split(&mut self, banks: &'static mut Banks) -> (TickEnds<'_>, LinkEnds<'_>) {
+        let (give_order, take_order) = self.orders.split();
+        let (give_outcome, take_outcome) = self.outcomes.split();
+        let (give_row, take_row) = self.rows.split();
+        let (give_trace, take_trace) = self.traces.split();
+        (
+            TickEnds {
+                orders: Taker(take_order),
+                outcomes: Giver(give_outcome),
+                rows: Taker(take_row),
+                traces: Giver(give_trace),
+                muscles: &mut banks.muscles,
+            },
+            LinkEnds {
+                orders: Giver(give_order),
+                outcomes: Taker(take_outcome),
+                rows: Giver(give_row),
+                traces: Taker(take_trace),
+                spare: Some(&mut banks.spare),
+            },
+        )
+    }
+}
+
+/// The tick's ends of [`Lines`].
+pub struct TickEnds<'q> {
+    pub(crate) orders: Taker<'q, Order>,
+    pub(crate) outcomes: Giver<'q, Outcome>,
+    pub(crate) rows: Taker<'q, Guarded<Row>>,
+    pub(crate) traces: Giver<'q, Traced>,
+    pub(crate) muscles: &'static mut Bank,
+}
+
+/// The link's ends of [`Lines`].
+pub struct LinkEnds<'q> {
+    pub(crate) orders: Giver<'q, Order>,
+    pub(crate) outcomes: Taker<'q, Outcome>,
+    pub(crate) rows: Giver<'q, Guarded<Row>>,
+    pub(crate) traces: Taker<'q, Traced>,
+    /// None while the tick has it.
+    pub(crate) spare: Option<&'static mut Bank>,
+}

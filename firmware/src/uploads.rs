@@ -1,0 +1,134 @@
+//! What hosts have uploaded: checked, stored, and built. What is restored at boot passes the checks of an upload.
+
+use crate::configuration::MUSCLES;
+use crate::driven::Driven;
+use crate::lines::Bank;
+use crate::link::{Refusal, Upload};
+use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
+use embedded_storage::nor_flash::MultiwriteNorFlash;
+use vm_nostd::TimeStep;
+
+/// What outlasts a loss of power.
+pub(crate) type Stored = [Option<Upload>; MUSCLES];
+
+/// The uploads of all places, and the muscles that were built of them.
+pub(crate) struct Uploads<'q, F> {
+    slots: Slots<'q, F>,
+    step: TimeStep,
+    uploads: &'q mut Stored,
+    built: &'q mut Bank,
+    restored: u8,
+}
+
+impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
+    /// Takes over what is stored. What could not be uploaded now is left out, and not stored again.
+    pub(crate) fn restore(
+        memory: F,
+        buffer: &'q mut SlotBuffer,
+        uploads: &'q mut Stored,
+        built: &'q mut Bank,
+        step: TimeStep,
+    ) -> Self {
+        let mut slots = Slots::new(memory, buffer);
+        if slots.load().and_then(|stored| take_uploads(stored, uploads)).is_none() {
+            *uploads = [None; MUSCLES];
+        }
+        let mut restored = Self { slots, step, uploads, built, restored: 0 };
+        for index in 0..MUSCLES {
+            restored.build(index);
+        }
+        restored
+    }
+
+    /// Builds what was stored for a place, if it can be.
+    fn build(&mut self, index: usize) {
+        let driven = self
+            .uploads
+            .get(index)
+            .and_then(Option::as_ref)
+            .map(|upload| self.checked(index, upload));
+        let driven = driven.and_then(Result::ok);
+        self.restored += u8::from(driven.is_some());
+        if let (Some(upload), Some(built)) =
+            (self.uploads.get_mut(index), self.built.get_mut(index))
+        {
+            if driven.is_none() {
+                *upload = None;
+            }
+            *built = driven;
+        }
+    }
+
+    /// Gives the memory back.
+    pub(crate) fn into_memory(self) -> F {
+        self.slots.into_memory()
+    }
+
+    /// All muscles as they were built.
+    pub(crate) fn built(&self) -> &Bank {
+        self.built
+    }
+
+    /// Places that had a muscle in memory at boot.
+    pub(crate) fn restored(&self) -> u8 {
+        self.restored
+    }
+
+    /// Checks an upload for a place, stores it, and builds it.
+    pub(crate) fn take(&mut self, index: usize, upload: Upload) -> Result<(), Refusal<'static>> {
+        let driven = self.checked(index, &upload)?;
+        self.store(index, &Some(upload))?;
+        if let (Some(slot), Some(built)) = (self.uploads.get_mut(index), self.built.get_mut(index))
+        {
+            (*slot, *built) = (Some(upload), Some(driven));
+        }
+        Ok(())
+    }
+
+    /// The muscle of an upload for a place, refused if there is none or its channel is taken.
+    fn checked(&self, index: usize, upload: &Upload) -> Result<Driven, Refusal<'static>> {
+        let driven = Driven::build(upload, self.step)?;
+        if let Some(channel) = driven.channel() {
+            self.only_free(channel, Some(index))?;
+        }
+        Ok(driven)
+    }
+
+    /// Stores what is stored, with another upload at a place.
+    // Not inlined: what it has on the stack would be there while building is deep.
+    #[inline(never)]
+    fn store(&mut self, index: usize, upload: &Option<Upload>) -> Result<(), Refusal<'static>> {
+        let mut all = self.uploads.each_ref();
+        *all.get_mut(index).ok_or(Refusal::Empty)? = upload;
+        let mut bytes = [0; MOST_STORED];
+        let bytes = postcard::to_slice(&all, &mut bytes)
+            .map_err(|_| Refusal::NotStored(NotStored::TooLong))?;
+        self.slots.store(bytes).map_err(Refusal::NotStored)
+    }
+
+    /// Refuses a channel that the electrode of a muscle has, but of the one at place `own`.
+    pub(crate) fn only_free(
+        &self,
+        channel: u8,
+        own: Option<usize>,
+    ) -> Result<(), Refusal<'static>> {
+        let taken = self.built.iter().enumerate().find(|(place, driven)| {
+            let has = driven.as_ref().and_then(Driven::channel);
+            Some(*place) != own && has == Some(channel)
+        });
+        match taken {
+            // Places are few.
+            Some((place, _)) => Err(Refusal::ChannelTaken { channel, place: place as u8 }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Reads what is stored, all of it or nothing.
+fn take_uploads(stored: &[u8], uploads: &mut Stored) -> Option<()> {
+    let mut rest = stored;
+    for upload in uploads {
+        (*upload, rest) = postcard::take_from_bytes(rest).ok()?;
+    }
+    rest.is_empty().then_some(())
+}
