@@ -346,19 +346,23 @@ fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
 }
 
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
-    let report = verify::verify()?;
-    let tables = [
-        (readme::MEASURED, readme::measured(&report)),
-        (readme::ERROR_BUDGET, readme::error_budget(&report)),
-    ];
     let mut all_current = true;
-    for (place, table) in tables {
+    let mut stale = |file: &str| {
+        complain(&format!("{file} is not what is measured: cargo vm readme --write"));
+        all_current = false;
+    };
+    for (place, table) in readme::tables(&verify::verify()?)? {
         if args.write {
             place.write(&table)?;
         } else if !place.is_current(&table)? {
-            complain("a README's table is not what is measured: cargo vm readme --write");
-            all_current = false;
+            stale(place.file());
         }
+    }
+    let picture = readme::picture()?;
+    if args.write {
+        readme::write_picture(&picture)?;
+    } else if !readme::picture_is_current(&picture)? {
+        stale(readme::PICTURE);
     }
     Ok(all_current)
 }

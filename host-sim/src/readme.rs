@@ -1,14 +1,20 @@
-//! The measured tables in the READMEs: made here, and compared with what is written there.
+//! Generated parts of the documentation: measured tables and the README's picture.
+//!
+//! Each is written by a command and compared by a test: `cargo vm readme`, `cargo vm cycles` and
+//! `cargo vm stack`, each with `--write`.
 
-use crate::cycles::{self, Share};
-use crate::scenario::paper_muscle;
-use crate::stack;
+mod fit;
+mod picture;
+mod tables;
+
+pub use picture::{PICTURE, picture};
+pub use tables::{cycles, error_budget, measured, memory, stack};
+
 use crate::trace::{TraceError, write_atomically};
-use crate::verify::{Report, Row};
-use std::collections::BTreeMap;
+use crate::verify::Report;
 use std::path::{Path, PathBuf};
 
-/// A place in a README that a measured table stands in, between two lines.
+/// Place of a generated table: between two marker lines of a Markdown file.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     file: &'static str,
@@ -16,33 +22,38 @@ pub struct Place {
     end: &'static str,
 }
 
-/// Where the table of accuracy stands.
-pub const MEASURED: Place = Place {
+/// The front page's table: cycles, memory and accuracy.
+pub const FIT: Place = Place {
     file: "README.md",
+    begin: "<!-- fit: cargo vm readme --write -->",
+    end: "<!-- end of fit -->",
+};
+/// Accuracy of every scenario.
+pub const MEASURED: Place = Place {
+    file: "host-sim/docs/accuracy.md",
     begin: "<!-- measured: cargo vm readme --write -->",
     end: "<!-- end of measured -->",
 };
-/// Where the error budget stands.
+/// The error budget: scheme and arithmetic apart.
 pub const ERROR_BUDGET: Place = Place {
-    file: "vm-nostd/README.md",
+    file: "host-sim/docs/accuracy.md",
     begin: "<!-- error budget: cargo vm readme --write -->",
     end: "<!-- end of error budget -->",
 };
-/// Where the table of costs stands.
+/// Cycles, code size and stack.
 pub const CYCLES: Place = Place {
-    file: "README.md",
+    file: "host-sim/docs/cycles.md",
     begin: "<!-- cycles: cargo vm cycles --write -->",
     end: "<!-- end of cycles -->",
 };
-
-/// Where the budget of the stimulator's memory stands.
+/// The stimulator's memory.
 pub const STACK: Place = Place {
     file: "firmware/README.md",
     begin: "<!-- memory: cargo vm stack --write -->",
     end: "<!-- end of memory -->",
 };
 
-/// Why the README could not be compared or written.
+/// Why a document could not be compared or written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeError {
     /// It could not be read.
@@ -56,221 +67,91 @@ pub enum ReadmeError {
     /// It could not be written.
     #[error(transparent)]
     Write(#[from] TraceError),
-    /// It has no place for the table.
+    /// The marker lines of the table are missing.
     #[error("{} has no lines \"{}\" and \"{}\"", .0.file, .0.begin, .0.end)]
     NoPlace(Place),
+    /// The table of cycles has no such cell.
+    #[error("{}: no number in row {row}, column {column}", CYCLES.file)]
+    NoCell {
+        /// Name of the case.
+        row: &'static str,
+        /// Heading.
+        column: &'static str,
+    },
+    /// The model refused the picture's muscle.
+    #[error(transparent)]
+    Run(#[from] crate::engine::RunError),
+    /// The picture could not be drawn.
+    #[error("{PICTURE}: {0}")]
+    Draw(String),
 }
 
-/// The table: f32 and fixed point against the reference, and the reference against the vectors.
-pub fn measured(report: &Report) -> String {
-    let mut text = String::from(
-        "| scenario | mode | f32 max | f32 rms | fixed max | fixed rms | f32 0.5 ms | fixed 0.5 ms | \
-         f32 2 ms | reference, N |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-    );
-    let newtons = paper_muscle().f0() / 100.0;
-    let at_1_ms = |row: &&Row| row.arithmetic == "f32" && !row.scenario.contains('@');
-    for row in report.rows.iter().filter(at_1_ms) {
-        let other = |step: &str, arithmetic: &str| {
-            let scenario = format!("{}{step}", row.scenario);
-            report.rows.iter().find(|other| {
-                (other.scenario == scenario && other.mode == row.mode)
-                    && other.arithmetic == arithmetic
-            })
-        };
-        let max = |step: &str, arithmetic: &str| {
-            let found = other(step, arithmetic);
-            found.map_or("-".to_owned(), |other| format!("{:.4}", other.max_pct_f0))
-        };
-        let fixed_rms =
-            other("", "fixed").map_or("-".to_owned(), |other| format!("{:.4}", other.rms_pct_f0));
-        let vector = other("", "reference")
-            .map_or("-".to_owned(), |vector| format!("{:.4}", vector.max_pct_f0 * newtons));
-        text.push_str(&format!(
-            "| {} | {} | {:.4} | {:.4} | {} | {fixed_rms} | {} | {} | {} | {vector} |\n",
-            row.scenario,
-            row.mode,
-            row.max_pct_f0,
-            row.rms_pct_f0,
-            max("", "fixed"),
-            max("@0.5ms", "f32"),
-            max("@0.5ms", "fixed"),
-            max("@2ms", "f32"),
-        ));
-    }
-    text
+/// All that is generated from a report of accuracy: each table, with its place.
+pub fn tables(report: &Report) -> Result<[(Place, String); 3], ReadmeError> {
+    Ok([
+        (MEASURED, measured(report)),
+        (ERROR_BUDGET, error_budget(report)),
+        (FIT, fit::table(report, &CYCLES.table()?)?),
+    ])
 }
 
-/// The table: what of the error is the scheme's, and what rounding and kernels add, at 1 ms.
-pub fn error_budget(report: &Report) -> String {
-    let mut text = String::from(
-        "| scenario | mode | scheme | f32 adds | f32 measured | fixed adds | fixed measured |\n\
-         |---|---|---:|---:|---:|---:|---:|\n",
-    );
-    let at_1_ms = |row: &&Row| row.arithmetic == "f64" && !row.scenario.contains('@');
-    for scheme in report.rows.iter().filter(at_1_ms) {
-        text.push_str(&format!(
-            "| {} | {} | {:.4} |",
-            scheme.scenario, scheme.mode, scheme.max_pct_f0
-        ));
-        let same = |row: &&Row| row.scenario == scheme.scenario && row.mode == scheme.mode;
-        for row in report.rows.iter().filter(same) {
-            if let Some(adds) = row.arithmetic_pct_f0 {
-                text.push_str(&format!(" {adds:.4} | {:.4} |", row.max_pct_f0));
-            }
-        }
-        text.push('\n');
-    }
-    text
+/// Whether the stored picture is the one that is drawn.
+pub fn picture_is_current(svg: &str) -> Result<bool, ReadmeError> {
+    Ok(read(&path_of(PICTURE))? == svg)
 }
 
-/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what instructions.
-pub fn cycles(rows: &[cycles::Row]) -> String {
-    let mut text = String::from(
-        "| case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-    );
-    let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-    for row in rows {
-        text.push_str(&format!(
-            "| {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
-            row.case,
-            row.cycles_typ_mean,
-            row.cycles_typ_max,
-            row.cycles_pess_max,
-            row.maximum_over_mean(),
-            optional(row.ratio.map(|ratio| format!("{ratio:.1}"))),
-            optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
-            row.state_bytes,
-            row.code_bytes,
-            optional(row.both_modes_bytes.map(|bytes| bytes.to_string())),
-            row.stack_bytes,
-        ));
-    }
-    let model: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
-    let columns = |shares: fn(&cycles::Row) -> &[Share]| {
-        model.iter().map(|row| (row.case.as_str(), shares(row))).collect::<Vec<Column<'_>>>()
-    };
-    text.push('\n');
-    let cycles = |share: &Share| format!("{:.0}", share.cycles);
-    text.push_str(&side_by_side("typ mean, by file", &columns(|row| &row.files), cycles));
-    text.push('\n');
-    let both = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
-    let heading = "typ mean, by class (instructions)";
-    text.push_str(&side_by_side(heading, &columns(|row| &row.classes), both));
-    text
+/// Stores the picture.
+pub fn write_picture(svg: &str) -> Result<(), ReadmeError> {
+    Ok(write_atomically(&path_of(PICTURE), svg.as_bytes())?)
 }
 
-/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
-pub fn stack(report: &stack::Report) -> String {
-    let mut text =
-        String::from("| what runs | priority | stack, B | most of it in |\n|---|---:|---:|---|\n");
-    for stack::Entry { task, priority, deepest } in &report.entries {
-        let most = deepest.path.iter().max_by_key(|step| step.bytes).filter(|step| step.bytes > 0);
-        let most =
-            most.map_or("-".to_owned(), |step| format!("`{}`, {} B", step.function, step.bytes));
-        text.push_str(&format!("| {task} | {priority} | {} | {most} |\n", deepest.bytes));
-    }
-    format!("{text}\n{}", memory(report))
+fn path_of(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file)
 }
 
-/// The table: what of the stimulator's memory goes where.
-pub fn memory(report: &stack::Report) -> String {
-    let mut text = String::from("| of memory | B | % |\n|---|---:|---:|\n");
-    for (what, bytes) in [
-        ("statics", report.statics),
-        ("deepest stack", report.stack),
-        ("of that, pushed by the core", report.core_frames),
-        ("free", report.free),
-        ("all", report.ram),
-        ("of that, for the stack", report.room_for_stack),
-    ] {
-        let share = 100.0 * f64::from(bytes) / f64::from(report.ram);
-        text.push_str(&format!("| {what} | {bytes} | {share:.1} |\n"));
-    }
-    text
-}
-
-/// A case, and the parts that its ticks have.
-type Column<'a> = (&'a str, &'a [Share]);
-
-/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all of them.
-fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> String) -> String {
-    let mut total: BTreeMap<&str, f64> = BTreeMap::new();
-    for share in columns.iter().flat_map(|(_, shares)| *shares) {
-        *total.entry(&share.name).or_default() += share.cycles;
-    }
-    let mut names: Vec<&str> = total.keys().copied().collect();
-    names.sort_by(|a, b| total[b].total_cmp(&total[a]));
-
-    let line = |first: &str, cell: &dyn Fn(&Column<'_>) -> String| {
-        let cells: Vec<String> = columns.iter().map(cell).collect();
-        format!("| {first} | {} |\n", cells.join(" | "))
-    };
-    let mut text = line(heading, &|(case, _)| (*case).to_owned());
-    text.push_str(&format!("|---|{}\n", "---:|".repeat(columns.len())));
-    for name in names {
-        text.push_str(&line(name, &|(_, shares)| {
-            let share = shares.iter().find(|share| share.name == name);
-            share.map_or("-".to_owned(), cell)
-        }));
-    }
-    text.push_str(&line("all", &|(_, shares)| cell(&Share::all(shares))));
-    text
+fn read(path: &Path) -> Result<String, ReadmeError> {
+    let error = |source| ReadmeError::Read { path: path.to_owned(), source };
+    std::fs::read_to_string(path).map_err(error)
 }
 
 impl Place {
-    /// Whether a table is the one that stands in the README.
+    /// Name of the file.
+    pub fn file(self) -> &'static str {
+        self.file
+    }
+
+    /// Whether a table is the one that stands in the file.
     pub fn is_current(self, table: &str) -> Result<bool, ReadmeError> {
-        let text = self.read()?;
+        let text = read(&path_of(self.file))?;
         Ok(self.filled(&text, table)? == text)
     }
 
-    /// Writes a table into the README.
+    /// Writes a table into the file.
     pub fn write(self, table: &str) -> Result<(), ReadmeError> {
-        let text = self.filled(&self.read()?, table)?;
-        write_atomically(&self.path(), text.as_bytes())?;
+        let path = path_of(self.file);
+        let text = self.filled(&read(&path)?, table)?;
+        write_atomically(&path, text.as_bytes())?;
         Ok(())
     }
 
-    fn path(self) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(self.file)
+    /// The table that stands in the file.
+    pub fn table(self) -> Result<String, ReadmeError> {
+        let text = read(&path_of(self.file))?;
+        Ok(self.split(&text)?.1.to_owned())
     }
 
-    fn read(self) -> Result<String, ReadmeError> {
-        let path = self.path();
-        std::fs::read_to_string(&path).map_err(|source| ReadmeError::Read { path, source })
-    }
-
-    /// A README's text with a table in this place.
+    /// A file's text with another table.
     fn filled(self, text: &str, table: &str) -> Result<String, ReadmeError> {
         let Place { begin, end, .. } = self;
-        let (before, rest) = text.split_once(begin).ok_or(ReadmeError::NoPlace(self))?;
-        let (_, after) = rest.split_once(end).ok_or(ReadmeError::NoPlace(self))?;
+        let (before, _, after) = self.split(text)?;
         Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_stand_side_by_side_the_dearest_first_and_add_up() {
-        let share = |name: &str, instructions, cycles| Share {
-            name: name.to_owned(),
-            instructions,
-            cycles,
-        };
-        let one = [share("load", 3.0, 5.6), share("branch", 1.0, 2.8)];
-        let other = [share("branch", 4.0, 9.0)];
-        let cell = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
-        assert_eq!(
-            side_by_side("by class", &[("one", &one), ("other", &other)], cell),
-            "| by class | one | other |\n\
-             |---|---:|---:|\n\
-             | branch | 3 (1) | 9 (4) |\n\
-             | load | 6 (3) | - |\n\
-             | all | 8 (4) | 9 (4) |\n",
-        );
+    /// Text before, between and after the marker lines.
+    fn split(self, text: &str) -> Result<(&str, &str, &str), ReadmeError> {
+        let missing = || ReadmeError::NoPlace(self);
+        let (before, rest) = text.split_once(self.begin).ok_or_else(missing)?;
+        let (table, after) = rest.split_once(self.end).ok_or_else(missing)?;
+        Ok((before, table, after))
     }
 }

@@ -1,30 +1,29 @@
-//! How far each row of `verify` may be off: one table, with a reason for each entry.
+//! Tolerances of `verify`: one table, with a reason for each entry.
 //!
-//! An entry that is looser than twice what is measured fails, and so does one that no row uses:
-//! the table says what is so, not what would be enough.
+//! A tolerance above twice the measured error fails, and so does one that no row uses.
 
 use std::collections::BTreeMap;
 
 const TABLE: &str = include_str!("../data/tolerances.csv");
 
-/// What a row may be off by.
+/// Tolerance of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// Largest absolute error, % of F0.
     pub max: f64,
-    /// Root-mean-square error, % of F0, where that is limited too.
+    /// Root-mean-square error, % of F0, if limited.
     pub rms: Option<f64>,
-    /// Why the error is what it is.
+    /// Cause of the error.
     pub reason: String,
 }
 
-/// Names a row: scenario, mode, arithmetic, and what it is compared against.
+/// Key of a row: scenario, mode, arithmetic, and what it is compared with.
 pub type Key = [String; 4];
 
 /// The table.
 ///
 /// # Panics
-/// If the built-in table is not as it should be; a test reads it.
+/// If the built-in table is malformed; a test reads it.
 pub fn table() -> BTreeMap<Key, Tolerance> {
     let mut reader = csv::Reader::from_reader(TABLE.as_bytes());
     reader
@@ -40,8 +39,8 @@ pub fn table() -> BTreeMap<Key, Tolerance> {
         .collect()
 }
 
-/// What the project promises of a row, whatever its own tolerance: largest and, where promised,
-/// root-mean-square error in % of F0.
+/// Promised largest and, where promised, root-mean-square error of a row, % of F0. It is independent of
+/// the row's tolerance.
 pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
     let [scenario, _, arithmetic, _] = key;
     if arithmetic == "reference" {
@@ -52,7 +51,10 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
         Some((_, "0.5ms" | "0.1ms")) => 0.5,
         _ => 1.0,
     };
-    // Where a tendon rings, as one that snaps taut or is pulled at with a jerk.
-    let rings = ["passive_length", "velocity_kinks"].iter().any(|name| scenario.starts_with(name));
-    if rings { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
+    if rings(scenario) { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
+}
+
+/// Whether the muscle rings on its tendon in a scenario: a slack tendon snaps taut, or the path jerks.
+pub fn rings(scenario: &str) -> bool {
+    ["passive_length", "velocity_kinks"].iter().any(|name| scenario.starts_with(name))
 }

@@ -85,3 +85,16 @@ fn the_tests_of_the_libraries_build_without_the_host() {
         assert_eq!(["host-sim", "system-tests"].iter().find(|name| knows(name)), None, "{package}");
     }
 }
+
+/// An example of a library is a program that shows how to use it; there are none but packages of their own.
+#[test]
+fn no_build_script_passes_for_an_example() {
+    let output = std::process::Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])
+        .current_dir(root())
+        .output()
+        .expect("cargo");
+    let metadata = String::from_utf8(output.stdout).expect("a text");
+    assert!(metadata.contains("\"kind\":[\"lib\"]"), "{metadata}");
+    assert!(!metadata.contains("\"kind\":[\"example\"]"), "{metadata}");
+}

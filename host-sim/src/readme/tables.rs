@@ -1,0 +1,189 @@
+//! The measured tables as Markdown.
+
+use crate::cycles::{self, Share};
+use crate::scenario::paper_muscle;
+use crate::stack;
+use crate::verify::{Report, Row};
+use std::collections::BTreeMap;
+
+/// The table: f32 and fixed point against the reference, and the reference against the vectors.
+pub fn measured(report: &Report) -> String {
+    let mut text = String::from(
+        "| scenario | mode | f32 max | f32 rms | fixed max | fixed rms | f32 0.5 ms | fixed 0.5 ms | \
+         f32 2 ms | reference, N |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    let newtons = paper_muscle().f0() / 100.0;
+    let at_1_ms = |row: &&Row| row.arithmetic == "f32" && !row.scenario.contains('@');
+    for row in report.rows.iter().filter(at_1_ms) {
+        let other = |step: &str, arithmetic: &str| {
+            let scenario = format!("{}{step}", row.scenario);
+            report.rows.iter().find(|other| {
+                (other.scenario == scenario && other.mode == row.mode)
+                    && other.arithmetic == arithmetic
+            })
+        };
+        let max = |step: &str, arithmetic: &str| {
+            let found = other(step, arithmetic);
+            found.map_or("-".to_owned(), |other| format!("{:.4}", other.max_pct_f0))
+        };
+        let fixed_rms =
+            other("", "fixed").map_or("-".to_owned(), |other| format!("{:.4}", other.rms_pct_f0));
+        let vector = other("", "reference")
+            .map_or("-".to_owned(), |vector| format!("{:.4}", vector.max_pct_f0 * newtons));
+        text.push_str(&format!(
+            "| {} | {} | {:.4} | {:.4} | {} | {fixed_rms} | {} | {} | {} | {vector} |\n",
+            row.scenario,
+            row.mode,
+            row.max_pct_f0,
+            row.rms_pct_f0,
+            max("", "fixed"),
+            max("@0.5ms", "f32"),
+            max("@0.5ms", "fixed"),
+            max("@2ms", "f32"),
+        ));
+    }
+    text
+}
+
+/// The table: what of the error is the scheme's, and what rounding and kernels add, at 1 ms.
+pub fn error_budget(report: &Report) -> String {
+    let mut text = String::from(
+        "| scenario | mode | scheme | f32 adds | f32 measured | fixed adds | fixed measured |\n\
+         |---|---|---:|---:|---:|---:|---:|\n",
+    );
+    let at_1_ms = |row: &&Row| row.arithmetic == "f64" && !row.scenario.contains('@');
+    for scheme in report.rows.iter().filter(at_1_ms) {
+        text.push_str(&format!(
+            "| {} | {} | {:.4} |",
+            scheme.scenario, scheme.mode, scheme.max_pct_f0
+        ));
+        let same = |row: &&Row| row.scenario == scheme.scenario && row.mode == scheme.mode;
+        for row in report.rows.iter().filter(same) {
+            if let Some(adds) = row.arithmetic_pct_f0 {
+                text.push_str(&format!(" {adds:.4} | {:.4} |", row.max_pct_f0));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what instructions.
+pub fn cycles(rows: &[cycles::Row]) -> String {
+    let mut text = String::from(
+        "| case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    for row in rows {
+        text.push_str(&format!(
+            "| {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
+            row.case,
+            row.cycles_typ_mean,
+            row.cycles_typ_max,
+            row.cycles_pess_max,
+            row.maximum_over_mean(),
+            optional(row.ratio.map(|ratio| format!("{ratio:.1}"))),
+            optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
+            row.state_bytes,
+            row.code_bytes,
+            optional(row.both_modes_bytes.map(|bytes| bytes.to_string())),
+            row.stack_bytes,
+        ));
+    }
+    let model: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
+    let columns = |shares: fn(&cycles::Row) -> &[Share]| {
+        model.iter().map(|row| (row.case.as_str(), shares(row))).collect::<Vec<Column<'_>>>()
+    };
+    text.push('\n');
+    let cycles = |share: &Share| format!("{:.0}", share.cycles);
+    text.push_str(&side_by_side("typ mean, by file", &columns(|row| &row.files), cycles));
+    text.push('\n');
+    let both = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
+    let heading = "typ mean, by class (instructions)";
+    text.push_str(&side_by_side(heading, &columns(|row| &row.classes), both));
+    text
+}
+
+/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
+pub fn stack(report: &stack::Report) -> String {
+    let mut text =
+        String::from("| what runs | priority | stack, B | most of it in |\n|---|---:|---:|---|\n");
+    for stack::Entry { task, priority, deepest } in &report.entries {
+        let most = deepest.path.iter().max_by_key(|step| step.bytes).filter(|step| step.bytes > 0);
+        let most =
+            most.map_or("-".to_owned(), |step| format!("`{}`, {} B", step.function, step.bytes));
+        text.push_str(&format!("| {task} | {priority} | {} | {most} |\n", deepest.bytes));
+    }
+    format!("{text}\n{}", memory(report))
+}
+
+/// The table: what of the stimulator's memory goes where.
+pub fn memory(report: &stack::Report) -> String {
+    let mut text = String::from("| of memory | B | % |\n|---|---:|---:|\n");
+    for (what, bytes) in [
+        ("statics", report.statics),
+        ("deepest stack", report.stack),
+        ("of that, pushed by the core", report.core_frames),
+        ("free", report.free),
+        ("all", report.ram),
+        ("of that, for the stack", report.room_for_stack),
+    ] {
+        let share = 100.0 * f64::from(bytes) / f64::from(report.ram);
+        text.push_str(&format!("| {what} | {bytes} | {share:.1} |\n"));
+    }
+    text
+}
+
+/// A case and the shares of its ticks.
+type Column<'a> = (&'a str, &'a [Share]);
+
+/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all of them.
+fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> String) -> String {
+    let mut total: BTreeMap<&str, f64> = BTreeMap::new();
+    for share in columns.iter().flat_map(|(_, shares)| *shares) {
+        *total.entry(&share.name).or_default() += share.cycles;
+    }
+    let mut names: Vec<&str> = total.keys().copied().collect();
+    names.sort_by(|a, b| total[b].total_cmp(&total[a]));
+
+    let line = |first: &str, cell: &dyn Fn(&Column<'_>) -> String| {
+        let cells: Vec<String> = columns.iter().map(cell).collect();
+        format!("| {first} | {} |\n", cells.join(" | "))
+    };
+    let mut text = line(heading, &|(case, _)| (*case).to_owned());
+    text.push_str(&format!("|---|{}\n", "---:|".repeat(columns.len())));
+    for name in names {
+        text.push_str(&line(name, &|(_, shares)| {
+            let share = shares.iter().find(|share| share.name == name);
+            share.map_or("-".to_owned(), cell)
+        }));
+    }
+    text.push_str(&line("all", &|(_, shares)| cell(&Share::all(shares))));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_stand_side_by_side_the_dearest_first_and_add_up() {
+        let share = |name: &str, instructions, cycles| Share {
+            name: name.to_owned(),
+            instructions,
+            cycles,
+        };
+        let one = [share("load", 3.0, 5.6), share("branch", 1.0, 2.8)];
+        let other = [share("branch", 4.0, 9.0)];
+        let cell = |share: &Share| format!("{:.0} ({:.0})", share.cycles, share.instructions);
+        assert_eq!(
+            side_by_side("by class", &[("one", &one), ("other", &other)], cell),
+            "| by class | one | other |\n\
+             |---|---:|---:|\n\
+             | branch | 3 (1) | 9 (4) |\n\
+             | load | 6 (3) | - |\n\
+             | all | 8 (4) | 9 (4) |\n",
+        );
+    }
+}

@@ -1,0 +1,138 @@
+//! The documents: their length and links, the README's C code and picture.
+
+use host_sim::readme;
+use host_sim::target::root;
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use system_tests::skip;
+
+/// Files below a folder, by the end of their name; not what is built, and nothing hidden.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if name == "target" || name.starts_with('.') {
+            continue;
+        } else if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).expect("a text")
+}
+
+/// Three minutes of reading for the front page, and not much more for the others.
+#[test]
+fn the_readmes_are_short() {
+    for (file, most) in [("README.md", 900)] {
+        let words = read(&root().join(file)).split_whitespace().count();
+        assert!(words <= most, "{file} has {words} words, of at most {most}");
+    }
+}
+
+/// A heading as the part of a link after `#`.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() }).collect()
+}
+
+/// Headings of a document, as anchors.
+fn anchors(text: &str) -> HashSet<String> {
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings.map(|line| anchor(line.trim_start_matches('#'))).collect()
+}
+
+/// Targets of a document's links, without code blocks.
+fn links(text: &str) -> Vec<String> {
+    let prose: Vec<&str> = text.split("```").step_by(2).collect();
+    let prose = prose.concat();
+    let targets = prose.split("](").skip(1);
+    targets.filter_map(|rest| rest.split_once(')')).map(|(link, _)| link.to_owned()).collect()
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading_of_it() {
+    let mut broken = Vec::new();
+    let mut checked = 0;
+    for document in files(&root(), "md") {
+        let text = read(&document);
+        for link in links(&text).into_iter().filter(|link| !link.starts_with("http")) {
+            let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
+            let target = match file {
+                "" => document.clone(),
+                file => document.parent().expect("a folder").join(file),
+            };
+            let leads = target.exists()
+                && (heading.is_empty() || anchors(&read(&target)).contains(heading));
+            if !leads {
+                broken.push(format!("{}: {link}", document.display()));
+            }
+            checked += 1;
+        }
+    }
+    assert!(broken.is_empty(), "{broken:#?}");
+    assert!(checked > 40, "only {checked} links");
+}
+
+#[test]
+fn links_and_headings_are_read_as_browsers_do() {
+    assert_eq!(anchor(" Why not 1,000 cycles and 8 KiB"), "why-not-1000-cycles-and-8-kib");
+    let text = "# A b\n[x](one.md#two) and\n```sh\n[y](three)\n```\n![z](four.svg)";
+    assert_eq!(links(text), ["one.md#two", "four.svg"]);
+    assert!(anchors(text).contains("a-b"));
+}
+
+#[test]
+fn the_picture_is_what_the_model_computes() {
+    let picture = readme::picture().expect("a picture");
+    let current = readme::picture_is_current(&picture).expect("a picture in the repository");
+    assert!(current, "{} has drifted: cargo vm readme --write", readme::PICTURE);
+}
+
+/// Compiled with every warning as an error, linked and run; its force is positive.
+#[test]
+fn the_c_code_of_the_readme_compiles_and_runs() {
+    let text = read(&root().join("README.md"));
+    let (_, rest) = text.split_once("```c\n").expect("a block of C");
+    let (code, _) = rest.split_once("```").expect("its end");
+    let program = format!(
+        "#include <stddef.h>\n#include \"vm_nostd.h\"\nint main(void) {{\n{code}\
+         return output.force_n > 0.0f && output.status == 0 ? 0 : 2;\n}}\n"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = folder.path().join("readme.c");
+    fs::write(&source, program).expect("a source");
+
+    let libraries = root().join("target/c-library");
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--package", "vm-nostd-c", "--target-dir"])
+        .arg(&libraries)
+        .current_dir(root())
+        .output()
+        .expect("cargo");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let binary = folder.path().join("readme");
+    let compiled = Command::new("cc")
+        .args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I"])
+        .arg(root().join("vm-nostd/c/include"))
+        .arg(&source)
+        .arg(libraries.join("release/libvm_nostd.a"))
+        .args(["-lm", "-lpthread", "-ldl", "-o"])
+        .arg(&binary)
+        .output();
+    let compiled = match compiled {
+        Ok(compiled) => compiled,
+        Err(error) => return skip(&format!("cc: {error} (apt-get install gcc)")),
+    };
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let run = Command::new(binary).status().expect("a program");
+    assert!(run.success(), "{run}");
+}
