@@ -1,4 +1,4 @@
-//! The published coefficient sets, read from the tables in `host-sim/data`.
+//! Published coefficient sets, from the tables in `host-sim/data`.
 
 use crate::reference::{Elements, Fiber, FiberType, Sag, Yielding};
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 const FIBERS: &str = include_str!("../data/fibers.csv");
 const ELEMENTS: &str = include_str!("../data/elements.csv");
 
-/// The set that is taken where a muscle names none.
+/// Default set.
 pub const DEFAULT_SET: &str = "paper-table-1";
 
 /// T_L of all published types, ms.
@@ -15,13 +15,13 @@ const EFFECTIVE_LENGTH_TIME: f64 = 0.088;
 /// One row of a table: column name to value; an empty cell has no entry.
 pub type Row = BTreeMap<String, f64>;
 
-/// What is wrong with a row, by column.
+/// An error in a row, by column.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RowError {
-    /// A coefficient that the type needs has no value.
-    #[error("`{0}` has no value, and the fibre type needs one")]
+    /// A required coefficient is missing.
+    #[error("`{0}` is missing: the fibre type requires it")]
     Missing(&'static str),
-    /// The rank is not a small whole number.
+    /// The rank is not a whole number from 1 to 255.
     #[error("`rank` = {0}: must be a whole number from 1 to 255")]
     Rank(f64),
 }
@@ -59,12 +59,12 @@ pub fn element_rows() -> Vec<(String, Row)> {
     table(ELEMENTS, 1)
 }
 
-/// The names a fibre type's coefficients go by, in the order of the table.
+/// Names of a fibre type's coefficients, in table order.
 pub fn fiber_columns() -> Vec<String> {
     columns(FIBERS, 2)
 }
 
-/// The names that the elements' coefficients go by, in the order of the table.
+/// Names of the elements' coefficients, in table order.
 pub fn element_columns() -> Vec<String> {
     columns(ELEMENTS, 1)
 }
@@ -80,7 +80,7 @@ pub fn fiber_row(preset: &str) -> Option<Row> {
     find(fiber_rows(), preset)
 }
 
-/// A preset type with its share of a muscle's cross section, not divided into motor units.
+/// A preset type with its share of the cross section, without motor units.
 pub fn fiber(preset: &str, fraction: f64) -> Option<Fiber> {
     let fiber_type = fiber_type(&fiber_row(preset)?).ok()?;
     Some(Fiber { fraction, units: Vec::new(), fiber_type })
@@ -91,7 +91,7 @@ pub fn elements(set: &str) -> Option<Elements> {
     Some(elements_of(&element_row(set)?))
 }
 
-/// The row of a set of shared elements, with a value for every column.
+/// Row of a set of shared elements; every column has a value.
 pub fn element_row(set: &str) -> Option<Row> {
     find(element_rows(), set)
 }
@@ -119,10 +119,10 @@ fn find(rows: Vec<(String, Row)>, label: &str) -> Option<Row> {
     rows.into_iter().find(|(name, _)| name == label).map(|(_, row)| row)
 }
 
-/// A fibre type from its row, times brought from milliseconds to seconds.
+/// A fibre type from its row; times are converted from ms to s.
 ///
-/// A row with any of the coefficients of sag (or of yield) needs them all; `TL_ms`, of effective length,
-/// is the same in all published types, and so where a row has none.
+/// A row with any coefficient of sag (or yield) needs all of them. `TL_ms` (effective length) is the
+/// same in all published types, which is the default.
 pub fn fiber_type(row: &Row) -> Result<FiberType, RowError> {
     let get = |name: &'static str| row.get(name).copied().ok_or(RowError::Missing(name));
     let seconds = |name: &'static str| Ok::<f64, RowError>(get(name)? * 1e-3);

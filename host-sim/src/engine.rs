@@ -1,4 +1,4 @@
-//! One muscle, any mode and arithmetic, stepped over a trace.
+//! Runs a muscle over a trace of inputs, in any mode and arithmetic.
 
 use crate::link::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Sample, Simulation, SolverError};
@@ -6,7 +6,7 @@ use crate::trace::InputTrace;
 use std::rc::Rc;
 use vm_nostd as vm;
 
-/// What a muscle is computed in.
+/// Arithmetic a muscle is computed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Arithmetic {
     /// The independent reference, adaptive, in f64.
@@ -20,7 +20,7 @@ pub enum Arithmetic {
 }
 
 impl Arithmetic {
-    /// Its name on the command line and in tables.
+    /// Name on the command line and in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reference => "reference",
@@ -31,7 +31,7 @@ impl Arithmetic {
     }
 }
 
-/// The name of a mode on the command line and in tables.
+/// Name of a mode on the command line and in tables.
 pub fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Continuous => "continuous",
@@ -41,47 +41,47 @@ pub fn mode_name(mode: Mode) -> &'static str {
     }
 }
 
-/// Why a run stopped.
+/// Why a run failed.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The muscle or its resting length was refused.
     #[error("{0}")]
     Refused(#[from] vm::ParameterError),
-    /// The reference integrator gave up.
+    /// The reference integrator failed.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// The reference has no bits to keep.
+    /// Bits are compared in the arithmetics of `vm-nostd` only.
     #[error("the reference has no bits to compare")]
     NoBits,
-    /// The discrete modes were asked for, and the muscle does not say what units it has.
+    /// A discrete mode, and a muscle without a number of motor units.
     #[error(
         "units = (missing), fibre type of rank {0}: the discrete modes need the number of units"
     )]
     NoUnits(u8),
-    /// More motor units than are built here.
-    #[error("{0} motor units: a muscle has at most {most} here", most = MOST_UNITS)]
+    /// More motor units than the host supports.
+    #[error("{0} motor units: at most {most} are supported", most = MOST_UNITS)]
     UnitCount(usize),
-    /// A muscle of so many types is not built here.
-    #[error("{0} fibre types: a muscle has 1 to {most} here", most = link::MOST_TYPES)]
+    /// More fibre types than the host supports.
+    #[error("{0} fibre types: 1 to {most} are supported", most = link::MOST_TYPES)]
     TypeCount(usize),
 }
 
-/// What a row of a run yields: force, length and velocity, and what was saturated.
+/// Output of a row: force, length and velocity, and the flags.
 pub type Row = (Sample, vm::Status);
 
-/// A muscle on its way, tick by tick.
+/// A muscle that is being run.
 pub trait Running {
-    /// Where it is.
+    /// Current output.
     fn row(&self) -> Row;
     /// Steps one tick.
     fn step(&mut self, input: Input) -> Result<Row, RunError>;
-    /// Another one in the same state.
+    /// A copy with its state.
     fn fork(&self) -> Box<dyn Running>;
-    /// Gives the words of its state to `watch`; the reference has none.
+    /// Calls `watch` with each word of the state; the reference has none.
     fn watch(&self, watch: &mut dyn FnMut(u64));
 }
 
-/// A muscle at rest on a path (m), to be stepped by `time_step` (s).
+/// A muscle at rest on a path (m), stepped by `time_step` (s).
 pub fn at_rest(
     muscle: &Muscle,
     mode: Mode,
@@ -98,7 +98,7 @@ pub fn at_rest(
     }
 }
 
-/// Runs a muscle over a trace: one row per input, the first of them the muscle at rest.
+/// Runs a muscle over a trace: one row per input; the first is the muscle at rest.
 pub fn run(
     muscle: &Muscle,
     mode: Mode,
@@ -114,7 +114,7 @@ pub fn run(
     Ok(rows)
 }
 
-/// A checksum (CRC-64/XZ) of the bits of the state after every tick.
+/// Checksum (CRC-64/XZ) of the state bits of every tick.
 pub fn fingerprint(
     muscle: &Muscle,
     mode: Mode,
@@ -135,7 +135,7 @@ pub fn fingerprint(
     Ok(digest.finalize())
 }
 
-/// What a run starts from.
+/// Start of a run.
 struct Rest<'a> {
     muscle: &'a Muscle,
     time_step: f64,
@@ -164,7 +164,7 @@ impl Rest<'_> {
         )
     }
 
-    /// A mode of motor units, with room for at least as many as the muscle has.
+    /// A discrete mode with capacity for at least the motor units of the muscle.
     fn discrete<S: vm::Scalar, A: vm::ActingLength<S>, const N: usize>(
         &self,
         mode: Mode,
@@ -232,16 +232,16 @@ struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
     f0: f64,
 }
 
-/// How tired a muscle is.
+/// Fatigue of a muscle.
 #[derive(Clone, Copy)]
 struct Tiring<S: vm::Scalar> {
     fatigue: vm::Fatigue<S>,
     state: vm::FatigueState<S>,
-    /// By stimulation, whose frequency counts.
+    /// Under FES: depends on the stimulation frequency.
     stimulated: bool,
 }
 
-/// Natural firing tires as the fastest stimulation does, pps.
+/// Natural firing fatigues like stimulation at this frequency, pps.
 const NATURAL: f64 = 100.0;
 
 impl<S: vm::Scalar> Tiring<S> {
@@ -282,10 +282,10 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
     }
 }
 
-/// The most motor units that a muscle can have here; in firmware the number is free.
+/// Most motor units of a muscle on the host; the library has no limit.
 pub const MOST_UNITS: usize = 512;
 
-/// How many motor units a muscle has; refused where a type has none.
+/// Number of motor units of a muscle; an error if a type has none.
 fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
     match muscle.fibers.iter().find(|fiber| fiber.units.is_empty()) {
         Some(fiber) => Err(RunError::NoUnits(fiber.fiber_type.rank)),
@@ -310,7 +310,7 @@ fn row<S: vm::Scalar>(output: vm::Output<S>, f0: f64) -> Row {
     (sample, output.status)
 }
 
-/// The names of the flags that are set, joined by `|`; `ok` where none is.
+/// Names of the flags that are set, joined by `|`; `ok` if none is.
 pub fn status_names(status: vm::Status) -> String {
     let names: Vec<&str> = status.iter_names().map(|(name, _)| name).collect();
     if names.is_empty() { "ok".to_owned() } else { names.join("|") }

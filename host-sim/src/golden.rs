@@ -1,5 +1,5 @@
-//! Golden bits: the state of every scenario, tick by tick, as a checksum that must not change
-//! without somebody saying why.
+//! Golden bits: a checksum of the state of every scenario in every tick. Changing one needs a
+//! reason (`cargo vm golden --bless --reason`).
 
 use crate::engine::{self, Arithmetic, RunError};
 use crate::scenario;
@@ -12,7 +12,7 @@ use std::path::Path;
 /// The committed file.
 pub const COMMITTED: &str = include_str!("../data/golden.toml");
 
-/// The committed checksums, and why they are what they are.
+/// The committed checksums and the reason for their last change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Golden {
@@ -22,7 +22,7 @@ pub struct Golden {
     pub state: BTreeMap<String, String>,
 }
 
-/// Why golden bits could not be had.
+/// Why the golden bits could not be compared or written.
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
     /// A scenario could not be run.
@@ -31,15 +31,15 @@ pub enum GoldenError {
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] TraceError),
-    /// The file could not be put together.
+    /// The file could not be serialised.
     #[error(transparent)]
     Format(#[from] toml::ser::Error),
-    /// The committed file is not what it should be.
+    /// The committed file could not be parsed.
     #[error("data/golden.toml: {0}")]
     Parse(#[from] toml::de::Error),
 }
 
-/// The checksums of what is built.
+/// Checksums of this build.
 pub fn compute() -> Result<BTreeMap<String, String>, RunError> {
     let cases: Vec<_> = scenario::all()
         .into_iter()
@@ -57,29 +57,29 @@ pub fn compute() -> Result<BTreeMap<String, String>, RunError> {
         .collect()
 }
 
-/// What is committed.
+/// The committed checksums.
 pub fn committed() -> Result<Golden, GoldenError> {
     Ok(toml::from_str(COMMITTED)?)
 }
 
-/// What differs between the committed checksums and those of what is built; empty if nothing.
+/// Differences between the committed checksums and those of this build.
 pub fn differences() -> Result<Vec<String>, GoldenError> {
     let committed = committed()?;
     let computed = compute()?;
     let mut found = Vec::new();
     for (key, bits) in &computed {
         match committed.state.get(key) {
-            None => found.push(format!("{key}: {bits}, and no golden bits")),
+            None => found.push(format!("{key}: {bits}, no golden bits")),
             Some(golden) if golden != bits => found.push(format!("{key}: {bits}, golden {golden}")),
             Some(_) => {}
         }
     }
     let gone = committed.state.keys().filter(|key| !computed.contains_key(*key));
-    found.extend(gone.map(|key| format!("{key}: golden bits of no scenario")));
+    found.extend(gone.map(|key| format!("{key}: golden bits without a scenario")));
     Ok(found)
 }
 
-/// Takes the bits of what is built as golden, for a reason.
+/// Stores the bits of this build as golden, with a reason.
 pub fn bless(reason: &str) -> Result<(), GoldenError> {
     let golden = Golden { reason: reason.to_owned(), state: compute()? };
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/golden.toml");

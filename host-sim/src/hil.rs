@@ -1,5 +1,4 @@
-//! Hardware in the loop: a muscle on a device, its inputs and outputs over the link, and its bits against the
-//! host's.
+//! Hardware in the loop: a muscle runs on a device over the link; its bits are compared with the host's.
 
 mod client;
 mod emulated;
@@ -11,7 +10,7 @@ pub use playback::{Played, play};
 
 use std::time::Duration;
 
-/// A line that reads nothing for so long says so.
+/// Read timeout of a line.
 pub(crate) const PAUSE: Duration = Duration::from_millis(100);
 
 /// A serial port.

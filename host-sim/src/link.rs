@@ -1,12 +1,12 @@
-//! The link from a muscle in the paper's symbols to the parameters of `vm-nostd`.
+//! Converts a muscle in the paper's symbols to the parameters of `vm-nostd`.
 
 use crate::reference::{Elements, Fatigue, FiberType, Muscle};
 use vm_nostd as vm;
 
-/// The most fibre types that a muscle can have here; in firmware the number is free.
+/// Most fibre types of a muscle on the host; the library has no limit.
 pub const MOST_TYPES: usize = 6;
 
-/// A value that `vm-nostd` refuses, named by the key of a muscle file and in its unit.
+/// A value that `vm-nostd` refuses, with the key and unit of a muscle file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// Index of the fibre type.
@@ -19,7 +19,7 @@ pub struct Refusal {
     pub limit: String,
 }
 
-/// Calls `$body` with a constant `$n` that is the number of types of `$muscle`.
+/// Calls `$body` with the number of fibre types of `$muscle` as a constant `$n`.
 macro_rules! with_type_count {
     ($muscle:expr, $n:ident => $body:expr, else $other:expr) => {
         match $muscle.fibers.len() {
@@ -53,7 +53,7 @@ macro_rules! with_type_count {
 }
 pub(crate) use with_type_count;
 
-/// Whether a muscle can be built.
+/// Checks that a muscle can be built.
 pub fn validate(muscle: &Muscle) -> Result<(), Refusal> {
     with_type_count!(
         muscle,
@@ -122,7 +122,7 @@ pub fn element_params(e: &Elements) -> vm::ElementParams {
     }
 }
 
-/// How a muscle tires.
+/// Fatigue parameters.
 pub fn fatigue_params(f: &Fatigue) -> vm::FatigueParams {
     vm::FatigueParams {
         fatigue_time: f.T_fat,
@@ -167,7 +167,7 @@ pub fn fiber_type(t: &FiberType) -> vm::FiberType {
     }
 }
 
-/// Field of `vm-nostd`, key of the muscle file, and the file's units per SI unit.
+/// Field of `vm-nostd`, key of the muscle file, and file units per SI unit.
 const KEYS: &[(&str, &str, f64)] = &[
     ("mass", "mass_g", 1e3),
     ("fascicle_length", "fascicle_length_cm", 1e2),
@@ -218,20 +218,20 @@ const KEYS: &[(&str, &str, f64)] = &[
     ("yielding.time_constant", "TY_ms", 1e3),
 ];
 
-/// A number in the file's unit, without the noise that changing units leaves in the last digits.
+/// A number in the file's unit, without the rounding noise of the conversion.
 fn in_file_unit(value: f64, scale: f64) -> f64 {
     format!("{:.9e}", value * scale).parse().unwrap_or(value * scale)
 }
 
 fn refusal(error: vm::ParameterError) -> Refusal {
-    // What follows from a field is named behind a colon.
+    // A derived quantity follows the field after a colon.
     let (field, derived) =
         error.field.split_once(": ").map_or((error.field, None), |(f, d)| (f, Some(d)));
     let (key, scale) = KEYS
         .iter()
         .find(|(name, ..)| *name == field)
         .map_or((field, 1.0), |&(_, key, scale)| (key, scale));
-    // In a unit of its own.
+    // It has its own unit.
     let scale = if derived.is_some() { 1.0 } else { scale };
     let key = derived.map_or(key.to_owned(), |derived| format!("{key}: {derived}"));
     let limit = match error.limit {

@@ -1,4 +1,4 @@
-//! How far one force trace is from another.
+//! Error of a force trace.
 
 use crate::reference::Sample;
 
@@ -14,7 +14,7 @@ pub struct ForceError {
 }
 
 impl ForceError {
-    /// Of `forces` against `expected` (both N) for a muscle of maximal force `f0` (N).
+    /// Error of `forces` against `expected` (N), relative to the maximal force `f0` (N).
     ///
     /// # Panics
     /// If the traces are empty or of different lengths.
@@ -29,7 +29,7 @@ impl ForceError {
             sum += error;
         }
         let count = forces.len() as f64;
-        // `f64::max` passes over a not-a-number; the sum does not.
+        // `f64::max` ignores NaN; the sum does not.
         let max = if sum.is_nan() { f64::NAN } else { max };
         Self { max, rms: (squares / count).sqrt(), bias: sum / count }
     }

@@ -1,4 +1,4 @@
-//! A muscle described in TOML: read, resolved against the published sets, and validated.
+//! Muscle files (TOML): parsed, completed from the published sets, and validated.
 
 mod line;
 mod size;
@@ -21,10 +21,10 @@ pub enum MuscleFileError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// Neither a file nor a name that is known.
+    /// Neither a file nor a known muscle name.
     #[error("{}: no such file, and no muscle of that name in `vm muscles`", .0.display())]
     Unknown(PathBuf),
     /// Not TOML, an unknown or missing key, or a value of the wrong type.
@@ -35,18 +35,18 @@ pub enum MuscleFileError {
         /// Line, key and reason.
         message: String,
     },
-    /// A value that no muscle can have.
+    /// A value out of range.
     #[error("{}{}: {key} = {value}: {limit}", path.display(), line.map_or(String::new(), |line| format!(", line {line}")))]
     Value {
         /// The file.
         path: PathBuf,
-        /// The key's line, counted from 1; none where the file does not have it.
+        /// Line of the key, counted from 1, if the file has it.
         line: Option<usize>,
         /// The key, with its table.
         key: String,
         /// The refused value, as in the file.
         value: String,
-        /// What it must be.
+        /// Limit it broke.
         limit: String,
     },
 }
@@ -72,7 +72,7 @@ struct MuscleFile {
     fatigue: Option<FatigueTable>,
 }
 
-/// How the muscle tires; without this table it does not.
+/// Fatigue; without this table there is none.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)] // the paper's symbols
@@ -125,7 +125,7 @@ fn default_coefficients() -> String {
     coefficients::DEFAULT_SET.to_owned()
 }
 
-/// A muscle and what it is called.
+/// A muscle and its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMuscle {
     /// Name, from the file.
@@ -196,7 +196,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     };
     let units: usize = muscle.fibers.iter().map(|fiber| fiber.units.len()).sum();
     if units > MOST_UNITS {
-        let limit = format!("a muscle has at most {MOST_UNITS} here, of all types together");
+        let limit = format!("at most {MOST_UNITS} in a muscle, all types together");
         return Err(refuse("fiber.units".to_owned(), units.to_string(), limit));
     }
     let validate = |muscle: &Muscle| {
@@ -208,7 +208,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
             (key, refusal.value, refusal.limit)
         })
     };
-    // A mass that is computed is refused only where what it is computed from is right.
+    // A computed mass is refused only if its inputs are valid.
     if matches!(size, Size::Force(_)) {
         validate(&muscle).map_err(refused)?;
     }
@@ -220,7 +220,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
 /// A key, its value and the limit it broke.
 type Refusal = (String, String, String);
 
-/// Coefficients of a row replaced by those that a table has of the same names.
+/// Replaces coefficients of a row by those of the same name in a table.
 fn override_by_name(
     row: &mut Row,
     table: &BTreeMap<String, toml::Value>,
@@ -259,11 +259,9 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
     let has = "a fibre has preset, fraction, units, unit_sizes and";
     override_by_name(&mut row, &table.overrides, &columns, has)?;
     let fiber_type = coefficients::fiber_type(&row).map_err(|error| match error {
-        RowError::Missing(name) => (
-            name.to_owned(),
-            "(missing)".to_owned(),
-            "give it, or a preset to take it from".to_owned(),
-        ),
+        RowError::Missing(name) => {
+            (name.to_owned(), "(missing)".to_owned(), "give it, or a preset that has it".to_owned())
+        }
         RowError::Rank(rank) => {
             ("rank".to_owned(), rank.to_string(), "must be a whole number from 1 to 255".to_owned())
         }
@@ -272,10 +270,10 @@ fn fiber(table: &FiberTable) -> Result<Fiber, Refusal> {
     Ok(Fiber { fraction: table.fraction, units, fiber_type })
 }
 
-/// The smallest unit's share of its type's cross section.
+/// Least share of a unit in the cross section of its type.
 const LEAST_SHARE: f64 = 1e-9;
 
-/// Shares of the type's motor units; none where the file names no units.
+/// Shares of the type's motor units; empty if the file gives no units.
 fn units(table: &FiberTable, rank: u8) -> Result<Vec<f64>, Refusal> {
     let refuse =
         |key: &str, value: String, limit: &str| Err((key.to_owned(), value, limit.to_owned()));
@@ -323,16 +321,14 @@ fn units(table: &FiberTable, rank: u8) -> Result<Vec<f64>, Refusal> {
             let shares = sizes.shares(rank, count);
             let least = shares.iter().copied().fold(1.0, f64::min);
             if least.is_nan() || least < LEAST_SHARE {
-                let limit = format!("the smallest unit's share, must be at least {LEAST_SHARE}");
+                let limit = format!("share of the smallest unit: must be at least {LEAST_SHARE}");
                 return refuse("unit_sizes", least.to_string(), &limit);
             }
             Ok(shares)
         }
-        None if table.unit_sizes.is_some() => refuse(
-            "units",
-            "(missing)".to_owned(),
-            "give the number of units that have these sizes",
-        ),
+        None if table.unit_sizes.is_some() => {
+            refuse("units", "(missing)".to_owned(), "give the number of units as well")
+        }
         None => Ok(Vec::new()),
     }
 }

@@ -1,4 +1,4 @@
-//! Human muscles by name: published morphometry, and what had to be assumed to make muscles of it.
+//! Human muscles by name: published morphometry, and the assumptions that complete it.
 //!
 //! Sources: gait2392 (Delp et al., IEEE Trans. Biomed. Eng. 37 (1990) 757-767; Yamaguchi & Zajac 1989;
 //! Anderson & Pandy 1999) and arm26 (after Holzbaur, Murray & Delp, Ann. Biomed. Eng. 33 (2005) 829-840), both
@@ -12,18 +12,18 @@ use std::path::Path;
 
 const TABLE: &str = include_str!("../data/human_muscles.csv");
 
-/// The published set whose elements and fibre types all of them have.
+/// Coefficient set of all of them.
 pub const SET: &str = "human-vm4";
 
-/// U_r of all of them: the authors' default.
+/// U_r of all of them: the authors' default value.
 const RECRUITMENT_SATURATION: f64 = 0.8;
 
-/// What the table does not say of a muscle, and is the same for all.
+/// Assumptions for all muscles of the table.
 pub const ASSUMPTIONS: [&str; 5] = [
     "L_se0 is the slack length of the source over LrT (0.964): the tendon's length at F0",
-    "L_mt_max lets the passive fascicles reach max_fascicle_length_l0: 1.4 is a guess between 1.3 and 1.5",
+    "L_mt_max: passive fascicles reach max_fascicle_length_l0; 1.4 is a guess (1.3 to 1.5)",
     "a slow fraction marked `guess` has no source; the rest is fast",
-    "mass follows from F0, specific tension and density; the sources scale some F0 up from anatomy",
+    "mass follows from F0, specific tension and density; some sources scale F0 up from anatomy",
     "fascicles pull in line with the tendon (no pennation)",
 ];
 
@@ -31,26 +31,26 @@ pub const ASSUMPTIONS: [&str; 5] = [
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HumanMuscle {
-    /// Its name, as `--muscle` takes it.
+    /// Name for `--muscle`.
     #[serde(rename = "muscle")]
     pub name: String,
     /// F0 along the fascicles, N.
     pub max_isometric_force_n: f64,
     /// L_ce0, cm.
     pub fascicle_length_cm: f64,
-    /// Length of the tendon as it takes up force, cm.
+    /// Slack length of the tendon, cm.
     pub tendon_slack_length_cm: f64,
     /// Angle between fascicles and tendon at optimal length, degrees.
     pub pennation_deg: f64,
-    /// Model that the morphometry is from.
+    /// Model the morphometry is taken from.
     pub source: String,
     /// Its licence.
     pub licence: String,
     /// Share of slow fibres in the cross section.
     pub slow_fraction: f64,
-    /// Where that share is from, or `guess`.
+    /// Source of that share, or `guess`.
     pub slow_source: String,
-    /// L_max that is assumed, L_ce0.
+    /// Assumed L_max, L_ce0.
     pub max_fascicle_length_l0: f64,
 }
 
@@ -102,7 +102,7 @@ impl HumanMuscle {
         )
     }
 
-    /// What it costs to leave pennation out, of steady force at full activation.
+    /// Error of leaving out pennation, for the steady force at full activation.
     pub fn pennation_cost(&self) -> PennationCost {
         let muscle = self.muscle();
         let pennation = Pennation::new(self.pennation_deg.to_radians());
@@ -127,12 +127,12 @@ impl HumanMuscle {
 pub struct PennationCost {
     /// On the same path with the same F0.
     pub as_it_stands: f64,
-    /// With F0 times the cosine of the angle and the path longer by what the fascicles' projection lacks at
-    /// L_ce0: what a fit of force and path would find.
+    /// With F0 times the cosine of the angle, and the path longer by the missing projection of the fascicles at
+    /// L_ce0, as a fit of force and path would find.
     pub made_up_for: f64,
 }
 
-/// All muscles that have a name, in the order of the table.
+/// All named muscles, in table order.
 pub fn all() -> Vec<HumanMuscle> {
     csv::Reader::from_reader(TABLE.as_bytes())
         .deserialize()
@@ -140,7 +140,7 @@ pub fn all() -> Vec<HumanMuscle> {
         .collect()
 }
 
-/// The text of a muscle's file or, where there is none of that name, of the muscle of that name in the table.
+/// Text of a muscle file or, if there is no such file, of the muscle of that name in the table.
 pub fn text(path: &Path) -> Result<String, MuscleFileError> {
     let human = all().into_iter().find(|human| path == Path::new(&human.name));
     match std::fs::read_to_string(path) {
@@ -153,7 +153,7 @@ pub fn text(path: &Path) -> Result<String, MuscleFileError> {
     }
 }
 
-/// A muscle from its file or, where there is none of that name, by its name in the table.
+/// A muscle from its file or, if there is no such file, by its name in the table.
 pub fn find(path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     muscle_file::parse(&text(path)?, path)
 }

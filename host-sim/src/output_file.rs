@@ -1,16 +1,16 @@
-//! Files that commands write: whole or not at all, where they were asked for, and with the permissions they had.
+//! Atomic writing of output files, with the permissions of the file that is replaced.
 
 use std::fs::{self, File, Metadata};
 use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 
-/// Links that lead from one to the next are followed so often, as the system does.
+/// Most symbolic links to follow, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// Writes a file beside its place and moves it there.
+/// Writes a temporary file in the same folder and renames it.
 ///
-/// Links are followed. A file that is there keeps its permissions, and as far as the system allows it its owner and
-/// group; a new one gets those that the umask leaves. What is no regular file, such as a pipe, is written as it is.
+/// Symbolic links are followed. An existing file keeps its permissions and, where allowed, its owner and
+/// group; a new one gets the umask's. A target that is no regular file, such as a pipe, is written directly.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let Some(place) = followed(path)? else { return fs::write(path, bytes) };
     let there = match fs::metadata(&place) {
@@ -20,14 +20,14 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
         Err(error) => return Err(error),
     };
     let mut builder = tempfile::Builder::new();
-    // Until it has its permissions, one that replaces another is only its writer's.
+    // Private to the writer until it has the permissions of the file it replaces.
     #[cfg(unix)]
     if there.is_none() {
         use std::os::unix::fs::PermissionsExt;
-        // The umask takes from it what the user wants taken.
+        // The umask applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    // What the system says is said of the file, not of the one beside it.
+    // Errors name the file, not the temporary one.
     let beside =
         builder.tempfile_in(folder_of(&place)).map_err(|error| Error::from(error.kind()))?;
     let mut file = beside.as_file();
@@ -45,7 +45,7 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Where links lead to, there or not; none where only the system can follow them, as into a pipe.
+/// Target of symbolic links, existing or not; none if only the system can follow them, as to a pipe.
 fn followed(path: &Path) -> Result<Option<PathBuf>> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -61,22 +61,22 @@ fn followed(path: &Path) -> Result<Option<PathBuf>> {
         let target = fs::read_link(&place)?;
         place = folder_of(&place).join(target);
     }
-    // Round and round: the system says so.
+    // A loop: the system reports it.
     fs::metadata(path).map(|_| None)
 }
 
-/// Gives a file the permissions of one that was there, and its owner and group where that is allowed.
+/// Copies permissions and, where allowed, owner and group of the replaced file.
 #[cfg(unix)]
 fn keep(file: &File, there: &Metadata) -> Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let new = file.metadata()?;
     if new.uid() != there.uid() {
-        // Only an administrator may give a file away; else it is its writer's.
+        // Only an administrator may change the owner.
         let _where_allowed = fchown(file, Some(there.uid()), None);
     }
     let mut mode = there.mode() & 0o777;
     if new.gid() != there.gid() && fchown(file, None, Some(there.gid())).is_err() {
-        // Another group gets what all others get.
+        // A group that could not be kept gets the permissions of others.
         mode = mode & 0o707 | (mode & 0o007) << 3;
     }
     if file.metadata()?.mode() & 0o777 != mode {

@@ -1,5 +1,4 @@
-//! What the arithmetics are compared on: the authors' vectors, and inputs of our own that are
-//! harder in one way or another.
+//! Scenarios for comparing the arithmetics: the authors' traces, and harder inputs of our own.
 
 use crate::coefficients;
 use crate::muscle_file;
@@ -22,7 +21,7 @@ pub struct Scenario {
     pub trace: InputTrace,
     /// Tendon force of the authors' program at every row, N.
     pub vector: Option<Vec<f64>>,
-    /// What `vm-nostd` must report to have saturated on the way, and nothing else.
+    /// Exactly the flags that `vm-nostd` must raise.
     pub flags: Status,
 }
 
@@ -40,7 +39,7 @@ pub fn paper_muscle() -> Muscle {
     }
 }
 
-/// The same, each type of it divided into so many motor units of the authors' default sizes.
+/// The same muscle with `count` motor units per type, of the authors' default sizes.
 pub fn paper_muscle_of_units(count: usize) -> Muscle {
     let mut muscle = paper_muscle();
     for fiber in &mut muscle.fibers {
@@ -86,7 +85,7 @@ fn preset(name: &str, fraction: f64) -> Fiber {
     coefficients::fiber(name, fraction).expect("a published preset")
 }
 
-/// The paper's muscle, tiring as a paralysed quadriceps does.
+/// The paper's muscle with the fatigue of a paralysed quadriceps.
 fn tiring_muscle() -> Muscle {
     let fatigue = Fatigue { T_fat: 18.0, T_rec: 30.0, fit_min: 0.0, beta: 0.6 };
     Muscle { fatigue: Some(fatigue), ..paper_muscle() }
@@ -98,7 +97,7 @@ struct Vector {
     mode: Mode,
     /// Motor units per type, in a discrete mode.
     units: usize,
-    /// The muscle's file, where it is not the paper's muscle.
+    /// The muscle's file, if it is not the paper's muscle.
     muscle: Option<&'static str>,
     text: &'static str,
 }
@@ -139,10 +138,10 @@ const PATH: f64 = 0.16;
 /// Frequencies of the sinusoids, Hz.
 const FREQUENCIES: [u32; 4] = [1, 3, 5, 10];
 
-/// Every scenario at 1 ms and at 0.5 ms, and the vectors at the longest and shortest step too.
+/// Every scenario at 1 ms and 0.5 ms; the vectors also at the longest and shortest step.
 pub fn all() -> Vec<Scenario> {
     let mut scenarios: Vec<Scenario> = VECTORS.iter().map(vector).collect();
-    // Of effective length there is no vector: the same inputs against the reference alone.
+    // There is no vector with effective length: compared with the reference only.
     let discrete = scenarios.iter().filter(|scenario| scenario.mode == Mode::Discrete);
     let mode = Mode::DiscreteEffectiveLength;
     let effective: Vec<Scenario> =
@@ -166,12 +165,12 @@ pub fn all() -> Vec<Scenario> {
             }));
         }
         scenarios.push(generated("fast_stretch", paper_muscle(), mode, 1.5, |t| {
-            // 14 to 18 cm at up to 6 L_ce0/s, and back so slowly that the tendon stays taut.
+            // 14 to 18 cm at up to 6 L_ce0/s, and back slowly, so that the tendon stays taut.
             let stretch = smooth((t - 0.5) / 0.11) - smooth((t - 1.0) / 0.4);
             [0.7, 0.14 + 0.04 * stretch, 25.0]
         }));
         scenarios.push(generated("velocity_kinks", paper_muscle(), mode, 1.5, |t| {
-            // Every 0.25 s the path sets off at 4.6 L_ce0/s, or stops as suddenly.
+            // Every 0.25 s the path starts at 4.6 L_ce0/s or stops within a tick.
             let moving = t.rem_euclid(0.5) < 0.25;
             let swing = if moving { libm::sin(TAU * 10.0 * t) } else { 0.0 };
             [0.5, PATH + 0.008 * swing, 30.0]
@@ -183,21 +182,21 @@ pub fn all() -> Vec<Scenario> {
             let activation = [0.0, 0.2, 0.6, 0.1, 0.4, 0.0][((t / 0.4) as usize).min(5)];
             [activation, 0.1 + 0.004 * libm::sin(TAU * 2.0 * t) * smooth(t / 0.5), 35.0]
         });
-        // FES starts its super-slow fibres, too, into a tendon that is hardly taut: for a moment
-        // the muscle shortens faster than they can.
+        // FES also recruits the super-slow fibres while the tendon is almost slack: the muscle
+        // briefly shortens faster than their V_max.
         let flags = match mode {
             Mode::Fes => Status::FASCICLE_OUTSIDE_DOMAIN,
             _ => Status::empty(),
         };
         scenarios.push(Scenario { flags, ..on_off });
         scenarios.push(generated("fatigue", tiring_muscle(), mode, 12.0, |t| {
-            // Two long holds at different strengths and a pause; faster stimulation in the second.
+            // Two long contractions with a pause; the second has a higher frequency.
             let on = smooth(t / 0.3) - smooth((t - 5.0) / 0.5) + 0.6 * smooth((t - 8.0) / 0.3);
             [on.max(0.0), PATH, 20.0 + 30.0 * smooth((t - 8.0) / 0.5)]
         }));
         scenarios.push(generated("walk_feline", feline_muscle(), mode, 2.0, |t| {
-            // Off is off: what rounding leaves of a sine's 0 would count as stimulated under FES,
-            // and no fixed-point number could hold it.
+            // Exactly 0 when off: a sine's rounding residue would count as stimulated under FES and
+            // is below the fixed-point ULP.
             let sine = libm::sin(TAU * 2.0 * t);
             let step = if sine > 1e-9 { sine } else { 0.0 };
             [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
@@ -211,7 +210,7 @@ pub fn all() -> Vec<Scenario> {
     scenarios
 }
 
-/// From 0 to 1 with no jump in speed or acceleration while `x` goes from 0 to 1.
+/// Smooth step from 0 to 1 for `x` from 0 to 1, without a jump of velocity or acceleration.
 fn smooth(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
@@ -238,7 +237,7 @@ fn vector(&Vector { name, mode, units, muscle, text }: &Vector) -> Scenario {
     }
 }
 
-/// Inputs given as activation, path length (m) and stimulation frequency (pps) over time.
+/// A scenario of activation, path length (m) and stimulation frequency (pps) over time.
 fn generated(
     name: &str,
     muscle: Muscle,
@@ -258,7 +257,7 @@ fn generated(
     Scenario { name: name.to_owned(), muscle, mode, trace, vector: None, flags: Status::empty() }
 }
 
-/// The same inputs at another time step: every `stride`-th of them, each made `factor` finer.
+/// The same scenario at another time step: every `stride`-th input, refined by `factor`.
 fn resampled(scenario: &Scenario, step: &str, stride: usize, factor: usize) -> Scenario {
     Scenario {
         name: format!("{}@{step}", scenario.name),

@@ -1,9 +1,8 @@
-//! The most stack that a program for a Cortex-M can take, computed from its image.
+//! Worst-case stack of a program for a Cortex-M, computed from its image.
 //!
-//! Every function is walked instruction by instruction with the depth of the stack at each; calls are followed from
-//! the depth at which they are made. What cannot be followed (a call by a register, a frame whose size is not in its
-//! instructions, recursion) makes the answer unknown, and is named. Interrupts nest: each priority adds its deepest
-//! handler and what the core itself pushes.
+//! Every function is walked instruction by instruction with the stack depth at each; calls are followed from
+//! the depth at which they are made. An indirect call, a frame of unknown size or recursion makes the result
+//! unknown and is named. Interrupts nest: each priority adds its deepest handler and the exception frame.
 
 mod calls;
 mod description;

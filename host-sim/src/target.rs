@@ -1,4 +1,4 @@
-//! The target: building the firmware's programs for it, and running them in QEMU.
+//! Builds the firmware's programs for the target and runs them in QEMU.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 /// An emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// The emulator's name of it.
+    /// QEMU's name of the machine.
     pub machine: &'static str,
     /// The target triple of its core.
     pub triple: &'static str,
@@ -14,32 +14,32 @@ pub struct Board {
 
 /// STM32F405, a Cortex-M4F: the board of the firmware.
 pub const STM32F405: Board = Board { machine: "netduinoplus2", triple: "thumbv7em-none-eabihf" };
-/// Arm's MPS2 board with a Cortex-M3, which has no floating-point unit.
+/// Arm's MPS2 board with a Cortex-M3: no floating-point unit.
 pub const CORTEX_M3: Board = Board { machine: "mps2-an385", triple: "thumbv7m-none-eabi" };
-/// nRF51, a Cortex-M0, which has no long multiplication either.
+/// nRF51, a Cortex-M0: no floating-point unit and no long multiplication.
 pub const CORTEX_M0: Board = Board { machine: "microbit", triple: "thumbv6m-none-eabi" };
-/// The program that is the stimulator.
+/// The stimulator's program.
 pub const STIMULATOR: &str = "firmware";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
-/// Why the target is not to be had.
+/// Why the target could not be used.
 #[derive(Debug, thiserror::Error)]
 pub enum TargetError {
-    /// The library of the target is missing, and rustup did not add it.
-    #[error("the library of {triple} is not installed (rustup target add {triple}): {message}")]
+    /// The target's library is missing and rustup could not add it.
+    #[error("target {triple} is not installed (rustup target add {triple}): {message}")]
     NoLibrary {
         /// Which target.
         triple: &'static str,
-        /// What rustup said.
+        /// Error of rustup.
         message: String,
     },
     /// The firmware did not build.
-    #[error("the firmware's program {program} does not build:\n{message}")]
+    #[error("{program} of the firmware does not build:\n{message}")]
     Build {
         /// Which program.
         program: String,
-        /// What cargo said.
+        /// Error of cargo.
         message: String,
     },
     /// A program could not be started.
@@ -47,7 +47,7 @@ pub enum TargetError {
     Start {
         /// Which program.
         program: String,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
 }
@@ -61,7 +61,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Adds the target's library where rustup can, and says why it is missing where it is.
+/// Adds the target's library with rustup; an error if that fails and it is missing.
 fn ensure_library(triple: &'static str) -> Result<(), TargetError> {
     // Without rustup the library may still be there.
     let added = Command::new("rustup").args(["target", "add", triple]).current_dir(root()).output();
@@ -80,8 +80,8 @@ fn ensure_library(triple: &'static str) -> Result<(), TargetError> {
     Err(TargetError::NoLibrary { triple, message })
 }
 
-/// Builds a program of the firmware for a board and returns its image; `variables` are set for the
-/// build.
+/// Builds a program of the firmware for a board and returns its image. `variables` are set in the
+/// build's environment.
 pub fn build(
     board: Board,
     program: &str,
@@ -89,9 +89,9 @@ pub fn build(
 ) -> Result<PathBuf, TargetError> {
     let triple = board.triple;
     ensure_library(triple)?;
-    // The stimulator names its chip; all other programs run on any core.
+    // Only the stimulator needs its chip.
     let feature = if program == STIMULATOR { "board-stm32f405" } else { "board" };
-    // A folder of its own: the host's may be locked by the cargo that runs this.
+    // A separate target folder: a running cargo may lock the host's.
     let folder = root().join("target/on-target");
     let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
         .args(["build", "--release", "--package", "firmware", "--features", feature])
@@ -110,7 +110,7 @@ pub fn build(
     Ok(folder.join(triple).join("release").join(program))
 }
 
-/// QEMU as a machine with nothing connected but semihosting, about to run an image.
+/// QEMU command that runs an image with semihosting and nothing else connected.
 pub fn emulator(machine: &str, image: &Path) -> Command {
     let mut command = Command::new(QEMU);
     command

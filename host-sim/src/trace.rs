@@ -1,4 +1,4 @@
-//! Traces in CSV: the inputs of a run, and what came of it.
+//! Input and output traces in CSV.
 
 use crate::output_file::{self, folder_of};
 use crate::reference::{Input, Sample};
@@ -18,10 +18,10 @@ pub enum TraceError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// Something in the file is wrong.
+    /// An error in the file.
     #[error("{}, line {line}, column {column}: {problem}", path.display())]
     Cell {
         /// The file.
@@ -30,7 +30,7 @@ pub enum TraceError {
         line: u64,
         /// Column name.
         column: String,
-        /// What is wrong.
+        /// The error.
         problem: String,
     },
 }
@@ -52,14 +52,14 @@ impl InputTrace {
         self.start + self.time_step * row as f64
     }
 
-    /// Every `stride`-th of the inputs.
+    /// Every `stride`-th input.
     #[must_use]
     pub fn strided(&self, stride: usize) -> Self {
         let inputs = self.inputs.iter().copied().step_by(stride).collect();
         Self { time_step: self.time_step * stride as f64, inputs, ..*self }
     }
 
-    /// The same inputs at a time step `factor` times finer: held, and for the path interpolated.
+    /// The same inputs at a time step `factor` times shorter: held, and the path interpolated.
     #[must_use]
     pub fn refined(&self, factor: usize) -> Self {
         let mut inputs = vec![self.inputs[0]];
@@ -74,10 +74,10 @@ impl InputTrace {
     }
 }
 
-/// How far a time step may be from the usual one, as a share of it.
+/// Tolerance of a time step, relative to the median.
 const TIME_TOLERANCE: f64 = 1e-3;
 
-/// Numbers beyond this have no place in a trace, and none in `f32`.
+/// Largest number in a trace.
 const LARGEST: f64 = 1e12;
 
 /// Reads a file of inputs.
@@ -95,7 +95,7 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     let [(_, first), .., (_, last)] = rows.as_slice() else {
         let line = rows.last().map_or(1, |(line, _)| *line) + 1;
         let problem = format!(
-            "{} row{}: a trace needs at least 2, to show its time step",
+            "{} row{}: a trace needs at least 2",
             rows.len(),
             if rows.len() == 1 { "" } else { "s" }
         );
@@ -104,7 +104,7 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     for (index, pair) in rows.windows(2).enumerate() {
         let (before, time) = (pair[0].1[0], pair[1].1[0]);
         if time <= before {
-            let problem = format!("{time} does not come after {before}, the time before");
+            let problem = format!("{time} is not after {before}, the previous time");
             return Err(wrong(index + 1, "t_s", problem));
         }
     }
@@ -113,14 +113,14 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
         let (before, time) = (pair[0].1[0], pair[1].1[0]);
         if ((time - before) - usual).abs() > TIME_TOLERANCE * usual {
             let problem = format!(
-                "{time} comes {:.9} s after {before}, other rows {usual:.9} s",
+                "{time} is {:.9} s after {before}; the time step is {usual:.9} s",
                 time - before
             );
             return Err(wrong(index + 1, "t_s", problem));
         }
     }
     let time_step = (last[0] - first[0]) / (rows.len() - 1) as f64;
-    // A step that is a round number of nanoseconds is meant to be just that.
+    // A step near a whole number of nanoseconds is rounded to it.
     let nanoseconds = time_step * 1e9;
     let time_step = if (nanoseconds - nanoseconds.round()).abs() < 1e-3 {
         nanoseconds.round() * 1e-9
@@ -140,14 +140,14 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     Ok(InputTrace { start: first[0], time_step, inputs })
 }
 
-/// The median of the time steps, s.
+/// Median of the time steps, s.
 fn usual_step(rows: &[(u64, Vec<f64>)]) -> f64 {
     let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].1[0] - pair[0].1[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps[(steps.len() - 1) / 2]
 }
 
-/// Reads the numbers under the leading `columns` of a file, each row with its line.
+/// Reads the numbers of the leading `columns` of a file, each row with its line.
 pub fn numbers(
     text: &[u8],
     path: &Path,
@@ -158,10 +158,8 @@ pub fn numbers(
     for (index, &column) in columns.iter().enumerate() {
         let found = header.get(index).unwrap_or("");
         if found.trim() != column {
-            let problem = format!(
-                "found \"{found}\" in the header, which must begin with {}",
-                columns.join(",")
-            );
+            let problem =
+                format!("the header has \"{found}\"; it must begin with {}", columns.join(","));
             return Err(cell_error(path, 1, column, problem));
         }
     }
@@ -204,19 +202,19 @@ pub struct OutputRow {
     pub status: String,
 }
 
-/// Nine significant digits: enough to tell any two `f32` apart.
+/// Nine significant digits, which distinguish any two `f32`.
 fn digits(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
-/// A time to the nanosecond, or as near as an f64 of its size can tell.
+/// A time to the nanosecond, or to the precision of `f64`.
 fn time_digits(time: f64) -> String {
     let whole = time.abs().max(1.0).log10().floor() as usize + 1;
     let text = format!("{time:.*}", 15_usize.saturating_sub(whole).clamp(1, 9));
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Writes an output file in one stroke: it is there whole, or as it was before.
+/// Writes an output file atomically.
 pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let record = |writer: &mut csv::Writer<Vec<u8>>, cells: &[String]| {
@@ -240,7 +238,7 @@ pub fn write_outputs(path: &Path, rows: &[OutputRow]) -> Result<(), TraceError> 
     write_atomically(path, &bytes)
 }
 
-/// Whether a file can be where it is to be written: its folder is there.
+/// Checks that the folder of an output file exists.
 pub fn check_folder(path: &Path) -> Result<(), TraceError> {
     let folder = folder_of(path);
     let error = |source| file_error(folder, source);
@@ -248,17 +246,17 @@ pub fn check_folder(path: &Path) -> Result<(), TraceError> {
     if found.is_dir() { Ok(()) } else { Err(error(std::io::ErrorKind::NotADirectory.into())) }
 }
 
-/// Writes a file as all commands do, see [`output_file::write`].
+/// Writes a file atomically, see [`output_file::write`].
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
     output_file::write(path, bytes).map_err(|source| file_error(path, source))
 }
 
-/// Whether two paths lead to the same file.
+/// Whether two paths are the same file.
 pub fn same_file(one: &Path, other: &Path) -> bool {
     one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
 }
 
-/// What is wrong in a cell of a file.
+/// An error in a cell of a file.
 pub fn cell_error(path: &Path, line: u64, column: &str, problem: String) -> TraceError {
     TraceError::Cell { path: path.to_owned(), line, column: column.to_owned(), problem }
 }

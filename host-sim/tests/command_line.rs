@@ -196,7 +196,7 @@ fn an_input_file_that_cannot_be_is_refused_by_line_and_column() {
         (&rows("0,0,0.16,0\n0.001,,0.16,0\n"), &["line 3", "activation", "\"\""]),
         (
             &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.001,0,0.16,0\n"),
-            &["line 4", "t_s", "does not come after"],
+            &["line 4", "t_s", "is not after 0.001"],
         ),
         (
             &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.003,0,0.16,0\n0.004,0,0.16,0\n"),

@@ -47,8 +47,8 @@ fn of_version(version: u8, message: &Message<'_>) -> Vec<u8> {
 #[test]
 fn both_versions_are_in_the_error_and_what_to_do() {
     let expected = format!(
-        "the device speaks version 1 of the link's protocol, this program version {VERSION}: \
-         flash the firmware that belongs to this program"
+        "the device has version 1 of the link's protocol, this program version {VERSION}: \
+         flash the firmware of this program's version"
     );
     // An older device answers in its own version; one that can be understood says so itself.
     let refusal = Message::NotActedUpon(LinkError::Version { got: VERSION, known: 1 });

@@ -43,17 +43,17 @@ fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
     let cases: [Case; 8] = [
         (
             |it| it.handlers.retain(|handler| handler.function != "TIM2"),
-            "vector 44 is TIM2, and described as DefaultHandler",
+            "vector 44 is TIM2, described as DefaultHandler",
         ),
-        (|it| it.handlers[0].vector = 54, "vector 54 is DefaultHandler, and described as USART1"),
-        (|it| it.handlers[0].vector = 900, "vector 900, described as USART1, is not there"),
-        (|it| it.indirect.clear(), "an indirect call"),
+        (|it| it.handlers[0].vector = 54, "vector 54 is DefaultHandler, described as USART1"),
+        (|it| it.handlers[0].vector = 900, "vector 900, described as USART1, does not exist"),
+        (|it| it.indirect.clear(), "indirect call"),
         (
             |it| it.indirect.extend(it.indirect.first().cloned().map(stale)),
             "stale: no indirect call in HardFault",
         ),
         (|it| it.ram.least_free_percent = 90, "less than 90 %"),
-        (|it| it.ram.guard_bytes = 1000, "it may step over"),
+        (|it| it.ram.guard_bytes = 1000, "it may skip"),
         // A task's handler needs a stack.
         (
             |it| {

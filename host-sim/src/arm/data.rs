@@ -8,15 +8,15 @@ use serde::Deserialize;
 
 const FILE: &str = include_str!("../../data/arm.toml");
 
-/// Which activation a muscle gets.
+/// Group of a muscle, which selects its activation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Group {
-    /// Over the shoulder alone.
+    /// Crosses the shoulder.
     Shoulder,
-    /// Over the elbow alone.
+    /// Crosses the elbow.
     Elbow,
-    /// Over both.
+    /// Crosses both.
     Biarticular,
 }
 
@@ -25,7 +25,7 @@ pub enum Group {
 pub struct ArmMuscle {
     /// Name.
     pub name: String,
-    /// Which activation it gets.
+    /// Its group.
     pub group: Group,
     /// Its path.
     pub path: PathPolynomial,
@@ -38,9 +38,9 @@ pub struct ArmMuscle {
 pub struct Arm {
     /// Segments.
     pub skeleton: Skeleton,
-    /// The joints are made for what is between these, rad; nothing stops them beyond.
+    /// Least angles of the joints, rad. Nothing stops a joint beyond its range.
     pub least_angles: Joints,
-    /// See `least_angles`.
+    /// Greatest angles, rad.
     pub greatest_angles: Joints,
     /// Flexor and extensor of shoulder and of elbow, and of both.
     pub muscles: Vec<ArmMuscle>,
@@ -104,7 +104,7 @@ impl Arm {
     /// The arm of the data file.
     ///
     /// # Panics
-    /// If that file, which is built in, is not as it should be.
+    /// If the built-in file is malformed.
     pub fn built_in() -> Self {
         let file: File = toml::from_str(FILE).expect("a built-in arm");
         Self {
@@ -141,7 +141,7 @@ impl File {
             group: table.group,
             path,
             muscle: Muscle {
-                // As much of it as makes the greatest force.
+                // Path at which the force is greatest.
                 mass: table.max_isometric_force_n * elements.density * fascicle_length
                     / elements.specific_tension,
                 L_ce0: fascicle_length,
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    /// The longest path against a walk over all angles, and the moment arms against differences.
+    /// The longest path against a search over all angles, the moment arms against finite differences.
     #[test]
     fn paths_and_moment_arms_belong_together() {
         let arm = Arm::built_in();

@@ -1,51 +1,51 @@
-//! What became of an arm under constant activations: whether its swings die out or go on.
+//! Outcome of an arm run: do its oscillations decay?
 
 use super::data::Arm;
 use super::simulation::Moment;
 use super::skeleton::Joints;
 use vm_nostd::Status;
 
-/// How a joint swings is judged in windows of this length, s.
+/// Window in which the amplitude of a joint is measured, s.
 const WINDOW: f64 = 0.5;
-/// From here on, s: before, the arm goes to where its muscles balance.
+/// Start of the first window, s: the arm moves to its equilibrium before.
 const SETTLING: f64 = 1.0;
-/// At least so many windows, half of which are early and half late.
+/// Least number of windows, half of them early and half late.
 const FEWEST: usize = 4;
-/// A joint that moves less in a window is at rest, degrees: a hundredth of what goniometers tell apart.
+/// A joint that moves less in a window is at rest, degrees: 1/100 of a goniometer's resolution.
 const LEAST_SWING: f64 = 0.01;
-/// Of a swing that dies out, less than this share of the early one is left late.
+/// An oscillation decays if its late amplitude is less than this share of the early one.
 const LEFT: f64 = 0.5;
 
-/// What became of it; pairs are shoulder and elbow.
+/// Outcome of a run; pairs are shoulder and elbow.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     /// Angles at the end, degrees.
     pub final_angles: Joints,
-    /// Early and late swings; none of a run that is too short to have them.
+    /// Early and late amplitudes; none if the run is too short.
     pub swings: Option<Swings>,
-    /// Some angle was beyond the joints' range, where nothing stops them and paths may be clipped.
+    /// An angle left the range of its joint, where paths may be clipped.
     pub out_of_range: bool,
-    /// Energy that is in the arm without a muscle having put it there, as a share of all that muscles
-    /// gave and took: the largest over the run.
+    /// Largest energy error over the run: kinetic energy minus work of the muscles, as a share of all work
+    /// done and absorbed.
     pub energy_error: f64,
     /// All flags of all muscles.
     pub status: Status,
 }
 
-/// The largest swings, from the least to the greatest angle of half a second, degrees.
+/// Largest peak-to-peak angles of a window, degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Swings {
-    /// In the first half of the time from 1 s on.
+    /// First half of the time after 1 s.
     pub early: Joints,
-    /// In the second half.
+    /// Second half.
     pub late: Joints,
-    /// How long each half is, s.
+    /// Duration of each half, s.
     half: f64,
 }
 
 impl Swings {
-    /// Of the swings from the early half to the late one, 1/s: negative where they die out. A joint at rest
-    /// counts as swinging by a hundredth of a degree.
+    /// Growth rate of the amplitude from the early to the late half, 1/s; negative if it decays. A joint at
+    /// rest counts as 0.01 degrees.
     pub fn growth(&self) -> Joints {
         [0, 1].map(|joint| {
             let [early, late] =
@@ -54,7 +54,7 @@ impl Swings {
         })
     }
 
-    /// Whether the swings of both joints die out, or have done so.
+    /// Whether both joints settle.
     pub fn settle(&self) -> bool {
         (0..2).all(|joint| {
             self.late[joint] <= LEAST_SWING || self.late[joint] <= LEFT * self.early[joint]
@@ -62,7 +62,7 @@ impl Swings {
     }
 }
 
-/// The larger of two; not-a-number where the first is.
+/// Maximum; NaN if the first is NaN.
 fn at_least(value: f64, least: f64) -> f64 {
     if value < least { least } else { value }
 }
@@ -111,7 +111,7 @@ fn swings(moments: &[Moment], time_step: f64) -> Option<Swings> {
     Some(Swings { early: largest(early), late: largest(late), half })
 }
 
-/// From the least to the greatest angle, degrees; not-a-number where an angle is.
+/// Peak-to-peak angle, degrees; NaN if any angle is.
 fn swing(moments: &[Moment], joint: usize) -> f64 {
     let angles = || moments.iter().map(|moment| moment.angles[joint].to_degrees());
     let (least, most) = angles()
@@ -123,7 +123,7 @@ fn swing(moments: &[Moment], joint: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// A run of 5 s in which the shoulder is at rest and the elbow goes by a function of time (degrees).
+    /// A run of 5 s: the shoulder rests, the elbow follows a function of time (degrees).
     fn judged(elbow: impl Fn(f64) -> f64) -> Swings {
         let moments: Vec<Moment> = (0..=500)
             .map(|tick| Moment {

@@ -1,9 +1,9 @@
-//! Musculotendon path and moment arms by joint angles.
+//! Musculotendon path and moment arms as functions of joint angles.
 
 use super::skeleton::Joints;
 
-/// Path length as a polynomial of second degree in each angle: `length + Σ (a q + b q²)`, with q counted
-/// from the reference angle. A muscle's moment arm about a joint is minus its path's derivative by q.
+/// Path length, quadratic in each angle: `length + Σ (a q + b q²)`, with q measured from the reference angle.
+/// The moment arm about a joint is minus the derivative of the path with respect to q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPolynomial {
     /// At the reference angles, m.
@@ -41,7 +41,7 @@ impl PathPolynomial {
             let added = |angle: f64| angle * (self.linear[joint] + angle * self.quadratic[joint]);
             let (from, to) =
                 (least[joint] - self.reference[joint], greatest[joint] - self.reference[joint]);
-            // Where the moment arm is 0, if that is in the range; without b there is no such angle.
+            // The extremum, where the moment arm is 0; there is none without b.
             let turning = -self.linear[joint] / (2.0 * self.quadratic[joint]);
             let inside = if turning > from && turning < to { turning } else { from };
             longest += added(from).max(added(to)).max(added(inside));

@@ -28,18 +28,18 @@ impl Activations {
     }
 }
 
-/// What drives the arm.
+/// Inputs of an arm run.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
     /// How the muscles are recruited.
     pub mode: Mode,
-    /// What they are computed in.
+    /// Arithmetic.
     pub arithmetic: Arithmetic,
     /// Constant activations.
     pub activations: Activations,
     /// Stimulation frequency, under FES, pps.
     pub stimulation_frequency: f64,
-    /// Angles that the arm starts from, at rest, rad.
+    /// Initial angles, at rest, rad.
     pub start: Joints,
     /// s.
     pub time_step: f64,
@@ -60,18 +60,18 @@ pub struct Moment {
     pub forces: Vec<f64>,
     /// J.
     pub kinetic_energy: f64,
-    /// What the muscles have done so far, J: the sum over muscles of -∫ F dL_mt.
+    /// Work of the muscles so far, J: the sum over muscles of -∫ F dL_mt.
     pub work: f64,
-    /// All that was ever given or taken: the sum of |F dL_mt|, J.
+    /// Work done and absorbed: the sum of |F dL_mt|, J.
     pub turnover: f64,
-    /// What any muscle had to saturate in this tick.
+    /// Flags of all muscles in this tick.
     pub status: Status,
 }
 
-/// Why the arm could not go on.
+/// Why an arm run failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ArmError {
-    /// A muscle has no rest where the arm is to start.
+    /// A muscle cannot rest at the initial angles.
     #[error("start = {shoulder:.3}, {elbow:.3} degrees: {name}: {source} (m)")]
     Start {
         /// Degrees.
@@ -83,7 +83,7 @@ pub enum ArmError {
         /// Why.
         source: RunError,
     },
-    /// A muscle stopped.
+    /// A muscle failed.
     #[error("{name}: {source}")]
     Muscle {
         /// Which.
@@ -91,18 +91,18 @@ pub enum ArmError {
         /// Why.
         source: RunError,
     },
-    /// A value that the arm cannot be given.
+    /// A value out of range.
     #[error("{field} = {value}: must be {least} to {most}{unit}")]
     Value {
         /// Which.
         field: &'static str,
         /// The refused value.
         value: f64,
-        /// The least that is taken.
+        /// Least allowed value.
         least: f64,
-        /// The most that is taken.
+        /// Greatest allowed value.
         most: f64,
-        /// With a space before it, if there is one.
+        /// Unit with a leading space, or empty.
         unit: &'static str,
     },
 }
@@ -128,7 +128,7 @@ impl Drive {
     }
 }
 
-/// Starts the arm at rest, holds the activations from then on, and returns every tick, the start first.
+/// Runs the arm from rest at constant activations; returns every tick, the initial state first.
 pub fn run(arm: &Arm, drive: &Drive) -> Result<Vec<Moment>, ArmError> {
     drive.validate(arm)?;
     let mut simulation = Simulation::new(arm, drive)?;
@@ -145,7 +145,7 @@ struct Simulation<'a> {
     drive: &'a Drive,
     running: Vec<Box<dyn Running>>,
     paths: Vec<f64>,
-    /// Forces at the end of the tick before the last, N.
+    /// Forces one tick earlier, N.
     forces_before: Vec<f64>,
     now: Moment,
 }
@@ -179,8 +179,8 @@ impl<'a> Simulation<'a> {
         Ok(Self { arm, drive, running, paths, forces_before: forces, now })
     }
 
-    /// One tick: foreseen with forces that go on as they did, then done with the forces that the muscles
-    /// have on the path foreseen. A force that is a tick late would feed the arm's oscillations.
+    /// One tick as predictor and corrector: predicted with extrapolated forces, then corrected with the forces on
+    /// the predicted path. A force that lags by a tick would feed energy into oscillations.
     fn step(&mut self) -> Result<(), ArmError> {
         let now = &self.now;
         let foreseen: Vec<f64> = now
@@ -216,7 +216,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Angles and velocities at the tick's end, if the forces go linearly from now to `end`.
+    /// Angles and velocities at the tick's end, with forces linear from now to `end`.
     fn moved(&self, end: &[f64]) -> Vector4<f64> {
         let now = &self.now;
         let start =
@@ -234,7 +234,7 @@ impl<'a> Simulation<'a> {
         *stepper.y_out().last().expect("the end of the step")
     }
 
-    /// Steps muscles to a state of the arm: their forces, paths and flags.
+    /// Steps the muscles to a state of the arm; returns forces, paths and flags.
     fn pull(
         &self,
         running: &mut [Box<dyn Running>],

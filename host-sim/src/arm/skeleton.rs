@@ -9,7 +9,7 @@
 //!              |  q1'²              |
 //! ```
 
-/// Shoulder and elbow: angles in rad, velocities in rad/s, torques in N m; flexion counts up.
+/// Shoulder and elbow: angles in rad, velocities in rad/s, torques in N m; flexion is positive.
 pub type Joints = [f64; 2];
 
 /// A rigid segment.
@@ -17,9 +17,9 @@ pub type Joints = [f64; 2];
 pub struct Segment {
     /// kg.
     pub mass: f64,
-    /// Of mass, from the joint above, m.
+    /// Centre of mass, from the proximal joint, m.
     pub centre: f64,
-    /// About the joint above, kg m².
+    /// Inertia about the proximal joint, kg m².
     pub inertia: f64,
 }
 
@@ -35,7 +35,7 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// What couples the segments: m2 l1 c2, kg m².
+    /// Coupling of the segments m2 l1 c2, kg m².
     fn coupling(&self) -> f64 {
         self.forearm.mass * self.upper_arm_length * self.forearm.centre
     }
@@ -110,7 +110,7 @@ mod tests {
         assert!((found - expected).abs() < 1e-12 * expected, "{found} J, not {expected} J");
     }
 
-    /// Without torques no energy is made or lost: M and C belong together.
+    /// Without torques energy is conserved: M and C are consistent.
     #[test]
     fn power_of_the_torques_is_the_change_of_energy() {
         let skeleton = Arm::built_in().skeleton;

@@ -1,4 +1,4 @@
-//! The host's end of the link.
+//! Client of the link: the host's end.
 
 use firmware::NotStored;
 use firmware::flash::MOST_STORE_MS;
@@ -12,107 +12,107 @@ use std::hash::{BuildHasher, RandomState};
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-/// A line that carries bytes; where none come for a while, reading says so (`TimedOut` or `WouldBlock`).
+/// A byte stream with a read timeout (`TimedOut` or `WouldBlock`).
 pub trait Line: Read + Write {}
 impl<L: Read + Write + ?Sized> Line for L {}
 
-/// Why the loop is not closed.
+/// Why hardware in the loop failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HilError {
     /// The port could not be opened.
     #[error("--port {port}: {message}")]
     Port {
-        /// Its name.
+        /// Name of the port.
         port: String,
-        /// What the system said.
+        /// The system's error.
         message: String,
     },
-    /// Nothing is built or emulated.
+    /// The firmware could not be built or emulated.
     #[error(transparent)]
     Target(#[from] crate::target::TargetError),
-    /// The line broke.
+    /// The line failed.
     #[error("the line to the device: {0}")]
     Line(#[from] std::io::Error),
-    /// Nobody answers.
-    #[error("the device does not answer to {request} within {PATIENCE:?}")]
+    /// No answer.
+    #[error("no answer to {request} within {PATIENCE:?}")]
     Silence {
-        /// What was asked.
+        /// The request.
         request: &'static str,
     },
-    /// It was understood, and refused.
+    /// The device refused the request.
     #[error("the device refuses {request}: {reason}")]
     Refused {
-        /// What was asked.
+        /// The request.
         request: &'static str,
         /// Field, value and limit.
         reason: String,
-        /// A device that has no room for rows, which passes.
+        /// The device has no room for rows at the moment.
         no_room: bool,
     },
-    /// Host and device were not made for each other.
+    /// Host and device use different versions of the protocol.
     #[error(
-        "the device speaks version {device} of the link's protocol, this program version {host}: \
-         flash the firmware that belongs to this program"
+        "the device has version {device} of the link's protocol, this program version {host}: \
+         flash the firmware of this program's version"
     )]
     OtherVersion {
         /// The device's version.
         device: u8,
-        /// The one of this program.
+        /// This program's version.
         host: u8,
     },
-    /// It was not understood.
+    /// The frame was not acted upon.
     #[error("the device does not act upon {request}: {}", why(*error))]
     NotActedUpon {
-        /// What was asked.
+        /// The request.
         request: &'static str,
         /// Why.
         error: LinkError,
     },
-    /// What came back answers something else.
-    #[error("the device's answer to {request} is of another kind")]
+    /// The answer is of another kind.
+    #[error("unexpected kind of answer to {request}")]
     OtherAnswer {
-        /// What was asked.
+        /// The request.
         request: &'static str,
     },
-    /// The device is not one for this muscle or these inputs.
+    /// The device does not support this muscle or these inputs.
     #[error("{what} = {value}: {limit}")]
     Unfit {
-        /// Of what.
+        /// Quantity.
         what: &'static str,
-        /// Which value.
+        /// Its value.
         value: String,
-        /// What it must be.
+        /// Its limit.
         limit: String,
     },
-    /// The host could not run the muscle itself.
+    /// The host's own run failed.
     #[error(transparent)]
     Run(#[from] crate::engine::RunError),
-    /// The device computes something else.
+    /// The device's bits differ from the host's.
     #[error("{0}")]
     Differs(String),
 }
 
 /// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// After so long without any byte, a request is sent again: not while the device may still be storing a muscle.
+/// A request is sent again after this silence: longer than the device takes to store a muscle.
 const AGAIN: Duration = Duration::from_millis(MOST_STORE_MS as u64 + 1_000);
-// A device whose flash never ends is started again by its watchdog, and then says that it knows no session.
+// If flash hangs, the watchdog restarts the device, which then reports that it has no session.
 const _: () = assert!(PATIENCE.as_millis() > DISARMED.most_ms() as u128 + AGAIN.as_millis());
 
 /// The same for a greeting.
 const GREET_AGAIN: Duration = Duration::from_millis(300);
 
-/// Asks a device, one request at a time.
+/// Sends requests to a device, one at a time.
 pub struct Client<L> {
     line: L,
     receiver: Receiver,
     session: SessionNumber,
     sequence: u16,
-    /// What came between answers.
+    /// Traces received between answers.
     traces: VecDeque<Traced>,
 }
 
-/// What a device said, with nothing borrowed.
+/// A received message, owned.
 enum Heard {
     Answer(u16, Result<Answer<'static>, (String, bool)>),
     NotActedUpon(LinkError),
@@ -120,7 +120,7 @@ enum Heard {
 }
 
 impl<L: Line> Client<L> {
-    /// On a line.
+    /// A client on a line, without a session.
     pub fn new(line: L) -> Self {
         Self {
             line,
@@ -136,33 +136,33 @@ impl<L: Line> Client<L> {
         &mut self.line
     }
 
-    /// The line, without the client.
+    /// Returns the line.
     pub fn into_line(self) -> L {
         self.line
     }
 
-    /// What rows have led to, if that has come.
+    /// Next received output of a row.
     pub fn next_trace(&mut self) -> Option<Traced> {
         self.traces.pop_front()
     }
 
-    /// Reads what comes within a moment.
+    /// Reads until the line times out.
     pub fn listen(&mut self) -> Result<(), HilError> {
         self.hear().map(|_| ())
     }
 
-    /// Sends bytes that need not be a frame.
+    /// Sends bytes as they are, framed or not.
     pub fn send_raw(&mut self, bytes: &[u8]) -> Result<(), HilError> {
         self.line.write_all(bytes)?;
         Ok(self.line.flush()?)
     }
 
-    /// The session, and the number of its next request.
+    /// Session and sequence number of the next request.
     pub fn session(&self) -> (SessionNumber, u16) {
         (self.session, self.sequence)
     }
 
-    /// Sends a request, again if it was broken on its way, and waits for its answer.
+    /// Sends a request, repeats it if it was damaged, and waits for the answer.
     pub fn ask(&mut self, request: &Request) -> Result<Answer<'static>, HilError> {
         let name = name(request);
         let sequence = self.sequence;
@@ -182,7 +182,7 @@ impl<L: Line> Client<L> {
                         no_room,
                     });
                 }
-                // To a request that was sent twice.
+                // Answer to the first copy of a repeated request.
                 Heard::Answer(..) => (),
                 Heard::NotActedUpon(LinkError::Replayed { sequence: old }) if old != sequence => (),
                 Heard::NotActedUpon(
@@ -205,9 +205,9 @@ impl<L: Line> Client<L> {
         Err(HilError::Silence { request: name })
     }
 
-    /// Begins a session: greets until there is an answer, for a device that is booting hears nothing.
+    /// Begins a session. The greeting is repeated, since a booting device does not hear it.
     pub fn greet(&mut self) -> Result<Info, HilError> {
-        // A map's hash is keyed by the system's random numbers.
+        // `RandomState` is seeded from the system's random numbers.
         let nonce = RandomState::new().hash_one(self.sequence) as u32;
         let started = Instant::now();
         let mut sent: Option<Instant> = None;
@@ -216,14 +216,14 @@ impl<L: Line> Client<L> {
             if sent.is_none_or(|sent| sent.elapsed() > GREET_AGAIN) {
                 let sequence = self.sequence;
                 self.sequence = sequence.wrapping_add(1);
-                // A zero ends what may have been left on the line.
+                // A zero ends a partial frame on the line.
                 self.send_raw(&[0])?;
                 let hello = encode(NO_SESSION, sequence, &Request::Hello { nonce });
                 self.send_raw(&hello.unwrap_or_default())?;
                 sent = Some(Instant::now());
             }
             match self.hear()? {
-                // An answer to an earlier greeting would begin a session that a later one ends.
+                // A later greeting ends the session of an earlier one.
                 Heard::Answer(to, Ok(Answer::Info(info)))
                     if to.wrapping_add(1) == self.sequence =>
                 {
@@ -233,7 +233,7 @@ impl<L: Line> Client<L> {
                 Heard::NotActedUpon(error @ LinkError::Version { .. }) => {
                     return Err(not_acted_upon("hello", error));
                 }
-                // May pass: what was left on the line is broken, and what is armed will not be for ever.
+                // Transient: a damaged partial frame, or a device that is still armed.
                 Heard::NotActedUpon(error) => refused = Some(error),
                 Heard::Answer(..) | Heard::Nothing => (),
             }
@@ -242,7 +242,7 @@ impl<L: Line> Client<L> {
             .map_or(HilError::Silence { request: "hello" }, |error| not_acted_upon("hello", error)))
     }
 
-    /// The same where there is nothing to be said but that it was done.
+    /// The same for a request whose answer is `Done`.
     pub fn order(&mut self, request: &Request) -> Result<(), HilError> {
         match self.ask(request)? {
             Answer::Done => Ok(()),
@@ -250,7 +250,7 @@ impl<L: Line> Client<L> {
         }
     }
 
-    /// The next message that is no trace, or nothing where nothing comes for a moment.
+    /// Next message other than traces, or nothing on a timeout.
     fn hear(&mut self) -> Result<Heard, HilError> {
         let mut byte = [0];
         loop {
@@ -267,11 +267,11 @@ impl<L: Line> Client<L> {
             }
             let content = match self.receiver.push(byte[0], NO_SESSION) {
                 Some(Ok(Frame { content, .. })) => content,
-                // Its messages cannot be read, whatever they are.
+                // Messages of another version cannot be parsed.
                 Some(Err(LinkError::Version { got, known })) => {
                     return Err(HilError::OtherVersion { device: got, host: known });
                 }
-                // What is broken on its way here is asked for again after a while.
+                // A damaged frame: the request is repeated after a timeout.
                 Some(Err(_)) | None => continue,
             };
             match postcard::from_bytes::<Message<'_>>(content) {
@@ -293,18 +293,18 @@ fn not_acted_upon(request: &'static str, error: LinkError) -> HilError {
 
 fn why(error: LinkError) -> String {
     match error {
-        LinkError::TooLong => "longer than any frame".to_owned(),
-        LinkError::TooShort => "shorter than any frame".to_owned(),
+        LinkError::TooLong => "longer than the longest frame".to_owned(),
+        LinkError::TooShort => "shorter than the shortest frame".to_owned(),
         LinkError::Malformed => "not a frame".to_owned(),
-        LinkError::Checksum => "its checksum is another one".to_owned(),
-        LinkError::Version { got, known } => format!("of version {got}, not {known}"),
-        LinkError::NoSession => {
-            "it belongs to no session; none begins while stimulation is armed".to_owned()
+        LinkError::Checksum => "wrong checksum".to_owned(),
+        LinkError::Version { got, known } => format!("version {got}, the device has {known}"),
+        LinkError::NoSession => "no session; none begins while stimulation is armed".to_owned(),
+        LinkError::Replayed { sequence } => {
+            format!("sequence number {sequence} was acted upon before")
         }
-        LinkError::Replayed { sequence } => format!("number {sequence} was acted upon before"),
-        LinkError::OutOfOrder { got, due } => format!("number {got} came where {due} was due"),
-        LinkError::NotAMessage => "it is no message".to_owned(),
-        LinkError::NoRandomNumber => "its random number generator gives none".to_owned(),
+        LinkError::OutOfOrder { got, due } => format!("sequence number {got}, expected {due}"),
+        LinkError::NotAMessage => "not a message".to_owned(),
+        LinkError::NoRandomNumber => "the device's random number generator failed".to_owned(),
     }
 }
 
@@ -333,21 +333,21 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::Empty => "no muscle is at that place".to_owned(),
         Refusal::NoRoom { room } => format!("room for {room} rows"),
         Refusal::NotStored(NotStored::Unknown) => {
-            "memory failed twice; the next boot restores this or what was stored before".to_owned()
+            "flash failed twice: the next boot restores these muscles or those stored before".to_owned()
         }
         Refusal::NotStored(reason) => {
             let reason = match reason {
-                NotStored::TooLong => "it has no room for it",
-                NotStored::Read => "it could not be read",
-                NotStored::Erase => "it was not erased",
-                NotStored::Write => "it was not written",
-                NotStored::Kept | NotStored::Unknown => "it did not keep it",
+                NotStored::TooLong => "too long",
+                NotStored::Read => "read failed",
+                NotStored::Erase => "erase failed",
+                NotStored::Write => "write failed",
+                NotStored::Kept | NotStored::Unknown => "verification failed",
             };
-            format!("memory: {reason}; what was stored before still is")
+            format!("flash: {reason}; the muscles stored before are kept")
         }
         Refusal::NotArmed(reason) => format!("{reason:?}"),
         Refusal::ChannelTaken { channel, place } => {
-            format!("channel {channel} is that of the electrode of muscle {place}")
+            format!("channel {channel} belongs to the electrode of muscle {place}")
         }
     }
 }

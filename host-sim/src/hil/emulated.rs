@@ -1,4 +1,4 @@
-//! The firmware on an emulated board, its USART a socket.
+//! The firmware in QEMU, with its USART as a socket.
 
 use crate::hil::{Client, HilError, PAUSE};
 use crate::target::{self, QEMU, STIMULATOR, STM32F405};
@@ -8,27 +8,27 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// A line to the firmware in QEMU, which ends with it.
+/// A line to the firmware in QEMU; dropping it ends QEMU.
 #[derive(Debug)]
 pub struct Emulated {
     stream: TcpStream,
     _machine: Machine,
 }
 
-/// Until the emulator is there.
+/// Longest start of QEMU.
 const BOOT: Duration = Duration::from_secs(30);
-/// An instruction takes 2^3 ns: with 168 MHz, 1.3 cycles. Time is that of the firmware alone, which while it waits
-/// goes from tick to tick at once: whatever else the host does, a tick is as long as its instructions.
+/// An instruction takes 2^3 ns (1.3 cycles at 168 MHz). Emulated time depends on instructions alone and skips
+/// waits, so that the load of the host does not delay a tick.
 const INSTRUCTION_TIME: &str = "shift=3,sleep=off";
 
 impl Emulated {
-    /// Builds the firmware, and starts it.
+    /// Builds and starts the firmware.
     pub fn start() -> Result<Client<Self>, HilError> {
         let image = target::build(STM32F405, STIMULATOR, &[])?;
         Ok(Client::new(Self::run(&image, &[])?))
     }
 
-    /// Starts an image, with more arguments for the emulator.
+    /// Starts an image, with additional arguments for QEMU.
     pub fn run(image: &Path, arguments: &[String]) -> Result<Self, HilError> {
         let listener = TcpListener::bind(("127.0.0.1", 0))?;
         listener.set_nonblocking(true)?;
@@ -62,7 +62,7 @@ impl Emulated {
     }
 }
 
-/// An emulator, which ends when nobody needs it.
+/// A QEMU process that ends when dropped.
 #[derive(Debug)]
 struct Machine(Child);
 

@@ -1,4 +1,4 @@
-//! A trace of inputs played to a muscle on a device.
+//! Plays a trace of inputs to a muscle on a device.
 
 use crate::engine::{self, Arithmetic};
 use crate::hil::{Client, HilError, Line};
@@ -9,20 +9,20 @@ use firmware::TYPES;
 use firmware::link::{Answer, MOST_ROWS, Mode, Report, Request, RowInputs, Traced, Upload};
 use vm_nostd::Status;
 
-/// What came of it.
+/// Result of a playback.
 #[derive(Clone, Debug)]
 pub struct Played {
-    /// Of each row, the first of them the muscle at rest: equal to the host's to the last bit.
+    /// Output of each row, bit-equal to the host's; the first is the muscle at rest.
     pub rows: Vec<engine::Row>,
-    /// Words of the state in the end, equal to the host's.
+    /// Final words of the state, equal to the host's.
     pub words: Vec<u32>,
-    /// How the device is after it.
+    /// Report of the device after the playback.
     pub report: Report,
 }
 
 /// Uploads a muscle, plays a trace to it, and compares every bit with the host's own run in `f32`.
 ///
-/// Stimulation is neither armed nor needed.
+/// Stimulation stays disarmed.
 pub fn play<L: Line>(
     client: &mut Client<L>,
     muscle: &Muscle,
@@ -41,7 +41,7 @@ pub fn play<L: Line>(
     let inputs: Vec<[RowInputs; 2]> = trace.inputs[1..]
         .iter()
         .map(|input| {
-            // What the host's own run rounds, and nothing else.
+            // Rounded as in the host's own run.
             let first = RowInputs {
                 activation: input.activation as f32,
                 path_length: input.path_length as f32,
@@ -65,7 +65,7 @@ pub fn play<L: Line>(
     Ok(Played { rows, words, report: report(client)? })
 }
 
-/// Begins a session with a device that has the right tick.
+/// Begins a session; an error if the device has another tick.
 pub(super) fn begin<L: Line>(client: &mut Client<L>, time_step: f64) -> Result<(), HilError> {
     let tick = f64::from(client.greet()?.tick_us) * 1e-6;
     if (tick - time_step).abs() > 1e-9 {
@@ -75,7 +75,7 @@ pub(super) fn begin<L: Line>(client: &mut Client<L>, time_step: f64) -> Result<(
     Ok(())
 }
 
-/// What the device is to be given of a muscle.
+/// The upload of a muscle.
 pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError> {
     let unfit = |what, value: String, limit: String| Err(HilError::Unfit { what, value, limit });
     if muscle.fibers.len() != TYPES {
@@ -83,11 +83,7 @@ pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError
         return unfit("fibre types", muscle.fibers.len().to_string(), limit);
     }
     if muscle.fatigue.is_some() {
-        return unfit(
-            "fatigue",
-            "a table".to_owned(),
-            "the device's muscles do not tire".to_owned(),
-        );
+        return unfit("fatigue", "a table".to_owned(), "the device has no fatigue".to_owned());
     }
     let mode = match mode {
         reference::Mode::Continuous => Mode::Continuous,
@@ -100,7 +96,7 @@ pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError
     Ok(Upload { mode, muscle: link::params(muscle), electrode: None })
 }
 
-/// Sends the next rows, as many as a message has, unless the device has no room: then it listens.
+/// Sends the next message of rows, or listens if the device has no room.
 fn send_some<L: Line>(
     client: &mut Client<L>,
     sent: usize,
@@ -120,7 +116,7 @@ fn send_some<L: Line>(
     }
 }
 
-/// A row of the device's, if it is the one that is due and has the host's bits.
+/// Checks that a row of the device is the next one and has the host's bits.
 fn compare(traced: &Traced, row: usize, expected: &engine::Row) -> Result<engine::Row, HilError> {
     if traced.row as usize != row {
         return Err(HilError::Differs(format!("row {} came instead of {row}", traced.row)));
@@ -164,7 +160,7 @@ fn compare_words<L: Line>(
     }
 }
 
-/// How a device is.
+/// Report of a device.
 pub(super) fn report<L: Line>(client: &mut Client<L>) -> Result<Report, HilError> {
     match client.ask(&Request::Report)? {
         Answer::Report(report) => Ok(report),

@@ -1,7 +1,7 @@
-//! Where in a muscle file a key is.
+//! Finds the line of a key in a muscle file.
 
-/// The line (counted from 1) of a key such as `mass_g`, `elements.cT` or `fiber[1].beta`, whose last part may name
-/// several keys or what follows from one; none where the file has no such line.
+/// Line (counted from 1) of a key such as `mass_g`, `elements.cT` or `fiber[1].beta`. The last part may
+/// be several keys or a derived quantity.
 pub(super) fn line_of(text: &str, key: &str) -> Option<usize> {
     let (table, key) = key.split_once('.').unwrap_or(("", key));
     let key = key.split([',', ':', '.', '[']).next().unwrap_or(key).trim();
@@ -9,7 +9,7 @@ pub(super) fn line_of(text: &str, key: &str) -> Option<usize> {
         Some((table, index)) => (table, index.trim_end_matches(']').parse().ok()?),
         None => (table, 0),
     };
-    // Which table a line is in, and how many of that name there were before.
+    // Table of the current line, and the number of earlier tables of that name.
     let (mut current, mut seen) = (String::new(), std::collections::HashMap::new());
     for (number, line) in text.lines().enumerate() {
         let line = line.trim_start();

@@ -1,12 +1,12 @@
-//! How strong a muscle is: by its mass, or by its maximal isometric force.
+//! Strength of a muscle: its mass or its maximal isometric force.
 
 use super::Refusal;
 use crate::reference::Muscle;
 
-/// A mass that every muscle may have, kg.
+/// A mass that is always valid, kg.
 pub(super) const ANY_MASS: f64 = 0.1;
 
-/// One of two keys, which say the same of a muscle.
+/// One of two keys for the same quantity.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Size {
     /// `mass_g`, in kg.
@@ -16,7 +16,7 @@ pub(super) enum Size {
 }
 
 impl Size {
-    /// What a file says; refused where it has both keys or none.
+    /// From a file; an error if it has both keys or none.
     pub(super) fn of(
         mass_g: Option<f64>,
         max_isometric_force_n: Option<f64>,
@@ -44,13 +44,13 @@ impl Size {
         }
     }
 
-    /// A refusal in terms of the key that the file has.
+    /// A refusal, in terms of the key in the file.
     pub(super) fn refusal(self, (key, value, limit): Refusal) -> Refusal {
         match self {
             Self::Force(newtons) if key == "mass_g" => (
                 "max_isometric_force_n".to_owned(),
                 newtons.to_string(),
-                format!("the mass that makes it, {value} g, {limit}"),
+                format!("its mass of {value} g {limit}"),
             ),
             _ => (key, value, limit),
         }

@@ -1,7 +1,7 @@
-//! Pennation, which Virtual Muscle has not: what it would change of steady force.
+//! Pennation, which Virtual Muscle does not model: its effect on steady force.
 //!
-//! Fascicles of a muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): they keep
-//! their height L sin α, so that sin α = sin α0/L, α0 being the angle at L_ce0; the tendon feels cos α of them.
+//! A muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): L sin α is constant, so
+//! that sin α = sin α0/L with the angle α0 at L_ce0; the tendon carries cos α of the fascicle force.
 
 use super::elements as element;
 use super::muscle::Muscle;
@@ -18,7 +18,7 @@ impl Pennation {
         Self { sine: angle.sin() }
     }
 
-    /// cos α of fascicles of length `l`, L_ce0; 0 where they are no longer than the muscle is thick.
+    /// cos α at fascicle length `l`, L_ce0; 0 if that is at most the muscle's thickness.
     pub fn cosine(self, l: f64) -> f64 {
         (1.0 - (self.sine / l).powi(2)).max(0.0).sqrt()
     }
@@ -40,7 +40,7 @@ impl Pennation {
             let passive = element::parallel_elastic(e, l, l_max, 0.0) + element::compression(e, l);
             self.cosine(l) * (filaments + passive).max(0.0)
         };
-        // From flat fascicles, which pull at nothing, to where no path is left for the tendon.
+        // From cos α = 0 to a tendon of no length.
         let (mut low, mut high) = (self.sine.max(1e-3), path / muscle.L_ce0 + 1.0);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-//! How activation becomes recruitment: the modes of Virtual Muscle 4.0.
+//! Recruitment: the modes of Virtual Muscle 4.0.
 
 use super::muscle::Muscle;
 
@@ -34,20 +34,20 @@ pub fn weights(units: &[Unit], u_eff: f64) -> Vec<f64> {
     excess.iter().map(|&e| if sum > 0.0 { e / sum } else { 0.0 }).collect()
 }
 
-/// What is recruited as one: a fibre type, or one of its motor units.
+/// A recruited unit: a fibre type or one of its motor units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// Index of its fibre type.
     pub fiber: usize,
     /// Its share of the muscle's cross section.
     pub pcsa: f64,
-    /// Uth: activation from which on it is recruited.
+    /// Recruitment threshold Uth.
     pub threshold: f64,
 }
 
 /// The units of a muscle, in order of recruitment.
 ///
-/// Discrete, Uth_j = max(0.001, U_r times the cross section up to and with unit j).
+/// Discrete: Uth_j = max(0.001, U_r times the cumulative cross section including unit j).
 pub fn units(muscle: &Muscle, mode: Mode) -> Vec<Unit> {
     let fibers = muscle.fibers.iter().enumerate();
     match mode {
@@ -59,7 +59,7 @@ pub fn units(muscle: &Muscle, mode: Mode) -> Vec<Unit> {
             .flat_map(|(fiber, f)| f.units.iter().map(move |share| (fiber, share * f.fraction)))
             .scan(0.0, |cumulative, (fiber, pcsa)| {
                 *cumulative += pcsa;
-                // The shares add to 1 but for rounding.
+                // The shares add to 1 within rounding.
                 let threshold = (muscle.U_r * *cumulative).clamp(0.001, 1.0);
                 Some(Unit { fiber, pcsa, threshold })
             })
@@ -84,7 +84,7 @@ pub fn firing_frequencies(
             } else if u < unit.threshold {
                 0.0
             } else if unit.threshold >= 1.0 {
-                // Recruited at full activation, where all fire at fmax.
+                // Recruited at U = 1, where all units fire at fmax.
                 t.fmax
             } else {
                 t.fmin + (t.fmax - t.fmin) * (u - unit.threshold) / (1.0 - unit.threshold)

@@ -1,6 +1,6 @@
-//! Integration of the model over ticks, by an adaptive Dormand-Prince 5(4) pair restarted at
-//! every tick: inputs jump there, and an implicit method with a finite-difference Jacobian
-//! started on the kink f_int = f_eff takes an infinite slope (see the design's numerics).
+//! Integration of the model over ticks, by an adaptive Dormand-Prince 5(4) pair that is restarted at
+//! every tick, because inputs jump there. An implicit method fails: its finite-difference Jacobian has an
+//! infinite slope at the kink f_int = f_eff.
 
 use super::elements as element;
 use super::muscle::Muscle;
@@ -19,7 +19,7 @@ pub struct Input {
     pub stimulation_frequency: f64,
 }
 
-/// What a tick yields.
+/// Output of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Tendon force, N.
@@ -30,19 +30,19 @@ pub struct Sample {
     pub fascicle_velocity: f64,
 }
 
-/// The integrator gave up.
+/// The integrator failed.
 #[derive(Debug, thiserror::Error)]
-#[error("the reference integrator stopped in tick {tick}: {source}")]
+#[error("the reference integrator failed in tick {tick}: {source}")]
 pub struct SolverError {
     /// Tick, counted from 1.
     pub tick: u64,
-    /// What the solver said.
+    /// The solver's error.
     pub source: IntegrationError,
 }
 
-/// Error per step that the integrator may commit, relative and absolute (in L_ce0, f0.5, ...).
+/// Tolerance per step, relative and absolute (in L_ce0, f0.5, ...).
 const TOLERANCE: f64 = 1e-9;
-/// Steps that one tick may take before the integrator gives up.
+/// Most steps of a tick.
 const MOST_STEPS: u32 = 200_000;
 
 // Layout of the state vector: L, V, U_eff, then Y of each type, then four per unit.
@@ -68,14 +68,14 @@ pub struct Simulation {
     time_step: f64,
     state: DVector<f64>,
     path_length: f64,
-    /// fit, 1 where the muscle does not tire.
+    /// Fitness; 1 without fatigue.
     fitness: f64,
     first_step: f64,
     tick: u64,
 }
 
 impl Simulation {
-    /// A muscle at rest at `path_length` (m), to be stepped by `time_step` (s).
+    /// A muscle at rest at `path_length` (m), stepped by `time_step` (s).
     pub fn at_rest(muscle: Muscle, mode: Mode, time_step: f64, path_length: f64) -> Self {
         let units = recruitment::units(&muscle, mode);
         let first_unit = FIRST_TYPE + muscle.fibers.len();
@@ -153,13 +153,13 @@ impl Simulation {
             self.time_step,
             self.first_step,
             MOST_STEPS,
-            MOST_STEPS, // the stiffness test would only refuse what small steps can do
+            MOST_STEPS, // also the stiffness test's, which would refuse feasible small steps
             OutputType::Sparse,
         );
         self.tick += 1;
         stepper.integrate().map_err(|source| SolverError { tick: self.tick, source })?;
         let times = stepper.x_out();
-        // The last step is cut to end with the tick; the one before tells the size to go on with.
+        // The last step is cut to end with the tick; the next tick starts with the step before.
         self.first_step = match times.as_slice() {
             [.., a, b, _] => b - a,
             _ => 0.0,
@@ -169,7 +169,7 @@ impl Simulation {
         }
         self.path_length = input.path_length;
         if let Some(fatigue) = &self.muscle.fatigue {
-            // Natural firing tires as the fastest stimulation does.
+            // Natural firing fatigues like the fastest stimulation.
             let frequency =
                 if self.mode == Mode::Fes { input.stimulation_frequency } else { f64::INFINITY };
             self.fitness = fatigue.fitness(self.fitness, self.time_step, u, frequency);
@@ -229,8 +229,8 @@ impl System<f64, DVector<f64>> for Tick<'_> {
             let (f_int, f_eff) = (y[at + F_INT], y[at + F_EFF]);
             let f_env = self.f_env[j];
             let rising = f_int >= f_eff;
-            // The frequency that acts on the filaments, what drives the chain of excitation,
-            // whether the unit sags, and the weights of the two kinds of force.
+            // Frequency at the filaments, input of the excitation chain, sag of the unit, and weights of
+            // the two kinds of force.
             let (f, drive, sagging, weight, compression_weight) = match self.mode {
                 Mode::Continuous => {
                     let weight = u_eff * weights[j];

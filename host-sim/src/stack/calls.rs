@@ -1,4 +1,4 @@
-//! The deepest way through all that a function calls.
+//! The deepest call path of a function.
 
 use super::description::Indirect;
 use super::function::{Call, Functions};
@@ -7,35 +7,35 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A function on a path of calls.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Step {
-    /// Its name.
+    /// Name.
     pub function: String,
-    /// What it holds of the stack when it calls the next one; in the path's last function, the most it takes.
+    /// Stack it holds at the call of the next function; in the last function, its greatest depth.
     pub bytes: u32,
 }
 
-/// The deepest path from a function.
+/// Deepest path of a function.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Deepest {
-    /// All of it.
+    /// Its depth, bytes.
     pub bytes: u32,
-    /// From the function on.
+    /// Its functions, from the entry.
     pub path: Vec<Step>,
 }
 
-/// Paths of calls through an image.
+/// Call paths through an image.
 pub(super) struct Calls<'f, 'a> {
     functions: &'f mut Functions<'a>,
     indirect: &'f [Indirect],
     known: BTreeMap<u32, Deepest>,
-    /// From the entry to the function that is being looked at.
+    /// From the entry to the current function.
     path: Vec<u32>,
-    /// Not called, whoever calls it.
+    /// A function whose calls are ignored.
     left_out: Option<u32>,
-    /// May begin a stack of its own: it never comes back.
+    /// A function that may start a new stack, because it never returns.
     pub may_begin: Option<u32>,
-    /// What makes an answer unknown.
+    /// Reasons why the depth is unknown.
     pub unknown: BTreeSet<String>,
-    /// Indirect calls that were met, by their place in the description.
+    /// Indirect calls that were found, by index in the description.
     pub used: BTreeSet<usize>,
 }
 
@@ -47,7 +47,7 @@ impl<'f, 'a> Calls<'f, 'a> {
         Self { functions, indirect, known, path, left_out, may_begin, unknown, used }
     }
 
-    /// The deepest path from a function that does not go through another.
+    /// Deepest path of a function, ignoring calls of another.
     pub fn deepest_without(&mut self, entry: u32, left_out: u32) -> Deepest {
         self.known.clear();
         self.left_out = Some(left_out);
@@ -57,7 +57,7 @@ impl<'f, 'a> Calls<'f, 'a> {
         deepest
     }
 
-    /// The deepest path from a function that begins with these two: the depth of the first at its call counts.
+    /// Deepest path of the second function, called by the first.
     pub fn deepest_through(&mut self, entry: u32, first: u32) -> Option<Deepest> {
         self.functions.walk(entry);
         let walked = self.functions.known(entry)?.clone();
@@ -79,7 +79,7 @@ impl<'f, 'a> Calls<'f, 'a> {
         found
     }
 
-    /// The deepest path from a function.
+    /// Deepest path of a function.
     pub fn deepest(&mut self, entry: u32) -> Deepest {
         if let Some(known) = self.known.get(&entry) {
             return known.clone();
@@ -98,7 +98,7 @@ impl<'f, 'a> Calls<'f, 'a> {
         }
         if let Some(at) = walked.begins.filter(|_| self.may_begin != Some(entry) || walked.returns)
         {
-            self.unknown.insert(format!("{name}, {at:#010x}: begins another stack"));
+            self.unknown.insert(format!("{name}, {at:#010x}: starts another stack"));
         }
         self.path.push(entry);
         let step = Step { function: name.clone(), bytes: walked.own };
@@ -125,14 +125,14 @@ impl<'f, 'a> Calls<'f, 'a> {
         Deepest { bytes: depth + behind.bytes, path }
     }
 
-    /// Where a call of a function can lead.
+    /// Possible targets of a call.
     fn targets(&mut self, name: &str, call: &Call) -> Vec<u32> {
         if let Some(target) = call.target {
             return vec![target];
         }
         let described = self.indirect.iter().position(|indirect| indirect.function == name);
         let Some(index) = described else {
-            self.unknown.insert(format!("{name}, {:#010x}: an indirect call", call.at));
+            self.unknown.insert(format!("{name}, {:#010x}: indirect call", call.at));
             return Vec::new();
         };
         self.used.insert(index);
@@ -213,7 +213,7 @@ mod tests {
         let functions: [(&str, &[u16]); 2] =
             [("f", &[0xB580, 0x4780, 0xBD80]), ("g", &[0xB5F0, 0xBDF0])];
         let (_, unknown) = deepest(&functions, &[]);
-        assert_eq!(unknown, ["f, 0x08000002: an indirect call"]);
+        assert_eq!(unknown, ["f, 0x08000002: indirect call"]);
         let described = |target: &str| Indirect {
             function: "f".to_owned(),
             targets: vec![target.to_owned()],

@@ -1,21 +1,22 @@
-//! What an image does not say of its stack: which vectors are used, at which priorities, and where indirect calls lead.
+//! Description of what an image does not contain: vectors in use, their priorities, and targets of indirect
+//! calls.
 
 use serde::Deserialize;
 
-/// What `firmware/stack.toml` holds.
+/// Contents of `firmware/stack.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
     /// The chip's memory.
     pub ram: Ram,
-    /// What runs while no interrupt does.
+    /// Thread mode: what runs without an interrupt.
     pub thread: Thread,
-    /// What all vectors lead to that are not described.
+    /// Function of all vectors that are not described.
     pub default_handler: String,
-    /// Everything that interrupts.
+    /// Interrupt handlers.
     #[serde(rename = "handler")]
     pub handlers: Vec<Handler>,
-    /// Calls by a register.
+    /// Indirect calls.
     #[serde(default)]
     pub indirect: Vec<Indirect>,
 }
@@ -28,43 +29,43 @@ pub struct Ram {
     pub start: u32,
     /// Bytes.
     pub bytes: u32,
-    /// What has to be free of statics and of the deepest stack, % of it.
+    /// Least share that must be free of statics and stack, %.
     pub least_free_percent: u32,
-    /// Bytes below it that are no memory: a function that takes more may step over them.
+    /// Bytes below it without memory. A function with a larger frame could skip them.
     pub guard_bytes: u32,
 }
 
-/// What runs while no interrupt does.
+/// Thread mode: what runs without an interrupt.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thread {
-    /// The function of vector 1.
+    /// Function of vector 1.
     pub entry: String,
-    /// The part of it that is over before the rest begins.
+    /// Part that returns before the rest runs.
     pub boot: String,
 }
 
-/// What interrupts.
+/// An interrupt handler.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Handler {
-    /// Its function.
+    /// Function.
     pub function: String,
-    /// Its place in the vector table.
+    /// Index in the vector table.
     pub vector: u32,
-    /// What it does.
+    /// Task.
     pub task: String,
-    /// Handlers of a lower one are interrupted by it, those of the same are not.
+    /// It interrupts handlers of lower priority, not of the same.
     pub priority: Priority,
 }
 
-/// Which handlers interrupt which.
+/// Priority of a handler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(untagged)]
 pub enum Priority {
-    /// A task's: the higher the more urgent.
+    /// Of a task: higher interrupts lower.
     Level(u8),
-    /// It ends everything: it must not need the stack at all.
+    /// It ends the program and must not use the stack.
     Ends(Ends),
 }
 
@@ -72,19 +73,19 @@ pub enum Priority {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ends {
-    /// By a reset.
+    /// With a reset.
     Reset,
 }
 
-/// Where a function's calls by a register lead.
+/// Targets of a function's indirect calls.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Indirect {
-    /// The function that calls.
+    /// Calling function.
     pub function: String,
-    /// All that it can call.
+    /// All possible targets.
     pub targets: Vec<String>,
-    /// How that is known.
+    /// Reason why these are all.
     pub reason: String,
 }
 

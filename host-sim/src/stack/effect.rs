@@ -1,44 +1,44 @@
-//! What an instruction does to the stack pointer, and where it goes.
+//! Effect of an instruction on stack pointer and control flow.
 
 use crate::cycles::{Class, Instruction};
 
-/// What an instruction does to the stack pointer.
+/// Effect of an instruction on the stack pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum OnStack {
-    /// Adds so many bytes.
+    /// Adds this many bytes.
     Moves(i32),
-    /// The instruction does not say by how much.
+    /// Changes it by an unknown amount.
     Dynamic,
-    /// Begins another one.
+    /// Starts another stack.
     Begins,
 }
 
-/// Where an instruction goes.
+/// Control flow of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Goes {
     /// To the next one.
     On,
     /// To an address.
     To(u32),
-    /// To an address, or on.
+    /// To an address, or to the next instruction.
     ToOrOn(u32),
-    /// To a function, and on if that returns.
+    /// Calls a function; continues if that returns.
     Call(u32),
-    /// By a register or memory, and on.
+    /// Calls through a register or memory, then continues.
     IndirectCall,
-    /// By a register or memory.
+    /// Jumps through a register or memory.
     IndirectJump,
-    /// By the table behind it, of entries of so many bytes.
+    /// Jumps through the table that follows, with entries of this many bytes.
     Table(u32),
     /// To the caller.
     Return,
-    /// Nowhere: an instruction that is none.
+    /// An undefined instruction.
     Nowhere,
 }
 
 const STACK_POINTER: u64 = 1 << 13;
 
-/// What an instruction does to the stack pointer.
+/// Effect of an instruction on the stack pointer.
 pub(super) fn on_stack(instruction: &Instruction) -> OnStack {
     let text = &instruction.text;
     let operands = text.split_once(' ').map_or("", |(_, operands)| operands);
@@ -56,7 +56,7 @@ pub(super) fn on_stack(instruction: &Instruction) -> OnStack {
     }
 }
 
-/// Where an instruction goes.
+/// Control flow of an instruction.
 pub(super) fn goes(instruction: &Instruction) -> Goes {
     let text = &instruction.text;
     let by = |go: fn(u32) -> Goes| instruction.target().map_or(Goes::IndirectJump, go);
@@ -71,7 +71,7 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
         ("bx", _) => Goes::IndirectJump,
         (name, _) if name.starts_with("blx") => Goes::IndirectCall,
         ("mov", _) if text == "mov pc, lr" => Goes::Return,
-        // What was pushed as the link register, and nothing else that is loaded.
+        // Only the pushed link register.
         (name, Class::LoadMany(_)) if instruction.writes_program_counter() => {
             let from_stack = name.starts_with("pop") || text.contains(" sp!");
             if from_stack { Goes::Return } else { Goes::IndirectJump }
@@ -82,14 +82,14 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     }
 }
 
-/// Which of the instructions behind an IT execute if its condition holds; all others do if it does not.
+/// Instructions of an IT block that execute if the condition holds; the others execute if it does not.
 pub(super) fn conditional_behind(instruction: &Instruction) -> Option<Vec<bool>> {
     let then_else = instruction.mnemonic().strip_prefix('i')?;
     let is_one = instruction.class == Class::IfThen;
     is_one.then(|| then_else.chars().map(|letter| letter == 't').collect())
 }
 
-/// Whether it may change what later conditions are told by.
+/// Whether it may change the condition flags.
 pub(super) fn sets_flags(instruction: &Instruction) -> bool {
     let name = instruction.mnemonic();
     ["cmp", "cmn", "tst", "teq", "vmrs", "msr"].iter().any(|setter| name.starts_with(setter))

@@ -1,4 +1,4 @@
-//! One function: how deep it goes by itself, and from how deep it calls others.
+//! Stack of one function: its own depth, and the depth at each call.
 
 use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack, sets_flags};
 use crate::cycles::{Decoded, Image};
@@ -7,38 +7,38 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A call, or a jump to another function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Call {
-    /// Where it is.
+    /// Address.
     pub at: u32,
-    /// Bytes of stack that its function holds then.
+    /// Stack depth of the function at the call, bytes.
     pub depth: u32,
-    /// The function's first address; none if it is not in the instruction.
+    /// Address of the called function; none for an indirect call.
     pub target: Option<u32>,
 }
 
-/// A function, walked.
+/// Result of walking a function.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Walked {
-    /// Most that it takes by itself, bytes.
+    /// Its own greatest depth, bytes.
     pub own: u32,
-    /// Whom it calls.
+    /// Its calls.
     pub calls: BTreeSet<Call>,
-    /// Whether it ever comes back.
+    /// Whether it returns.
     pub returns: bool,
-    /// Where it begins another stack, if it does.
+    /// Address at which it starts another stack.
     pub begins: Option<u32>,
-    /// What cannot be told, by address.
+    /// Unknowns, by address.
     pub unknown: BTreeMap<u32, String>,
 }
 
-/// All functions that were walked so far.
+/// Functions walked so far.
 pub(super) struct Functions<'a> {
     pub image: &'a Image,
     decoded: Decoded<'a>,
-    /// None while a function is walked: it calls itself, by others or at once.
+    /// None while a function is being walked, which detects recursion.
     walked: BTreeMap<u32, Option<Walked>>,
 }
 
-/// Depths that one instruction can be met at: more is a stack that grows in a loop.
+/// Most different depths of an instruction; more means that the stack grows in a loop.
 const MOST_DEPTHS: usize = 8;
 
 const NOP: [u8; 2] = [0x00, 0xBF];
@@ -57,12 +57,12 @@ impl<'a> Functions<'a> {
         }
     }
 
-    /// A function that was walked before.
+    /// A walked function.
     pub fn known(&self, address: u32) -> Option<&Walked> {
         self.walked.get(&address)?.as_ref()
     }
 
-    /// Walks a function and all that it calls.
+    /// Walks a function and its callees.
     pub fn walk(&mut self, entry: u32) {
         if self.walked.contains_key(&entry) {
             return;
@@ -74,7 +74,7 @@ impl<'a> Functions<'a> {
         targets.into_iter().for_each(|target| self.walk(target));
     }
 
-    /// Whether a function comes back; one that is being walked counts as if it did.
+    /// Whether a function returns; assumed while it is being walked.
     fn returns(&mut self, entry: u32) -> bool {
         self.walk(entry);
         self.known(entry).is_none_or(|walked| walked.returns)
@@ -88,11 +88,11 @@ impl<'a> Functions<'a> {
         };
         let inside = home.address..home.address + home.size;
         let mut depths: BTreeMap<(u32, Vec<bool>), Vec<u32>> = BTreeMap::new();
-        // Where, how deep, and which of the next instructions execute, where an IT says so.
+        // Address, depth, and the pending IT conditions.
         let mut ahead = vec![(entry, 0_u32, Vec::new())];
         while let Some((at, depth, block)) = ahead.pop() {
             let seen = depths.entry((at, block.clone())).or_default();
-            // Deeper than before, or nothing new.
+            // Visited at this depth already.
             if seen.last().is_some_and(|&before| before >= depth) {
                 continue;
             }
@@ -127,7 +127,7 @@ impl<'a> Functions<'a> {
             let moved = match on_stack(&instruction) {
                 OnStack::Moves(bytes) => i64::from(depth) - i64::from(bytes),
                 OnStack::Dynamic => {
-                    unknown("a frame whose size is not in the instruction");
+                    unknown("frame of unknown size");
                     i64::from(depth)
                 }
                 OnStack::Begins => {
@@ -136,7 +136,7 @@ impl<'a> Functions<'a> {
                 }
             };
             let Ok(after) = u32::try_from(moved) else {
-                unknown("takes from the stack what is not its own");
+                unknown("pops beyond its own frame");
                 continue;
             };
             walked.own = walked.own.max(after);
@@ -171,7 +171,7 @@ impl<'a> Functions<'a> {
                 Goes::Return => {
                     walked.returns = true;
                     if after != 0 {
-                        unknown("returns with something on the stack");
+                        unknown("returns without restoring the stack");
                     }
                 }
                 Goes::Nowhere => (),
@@ -193,15 +193,15 @@ impl<'a> Functions<'a> {
         walked
     }
 
-    /// Where the table of a TBB or TBH leads, of entries of 1 or 2 bytes. It ends where code begins again: where the
-    /// image says so, or else at the first of its targets.
+    /// Targets of the table of a TBB or TBH, with entries of 1 or 2 bytes. The table ends where code begins, as
+    /// marked in the image or at its first target.
     fn table(&self, start: u32, bytes: u32) -> Option<BTreeSet<u32>> {
         let mut targets: BTreeSet<u32> = BTreeSet::new();
         let mut at = start;
         let end = self.image.code_behind(start).unwrap_or(u32::MAX);
         loop {
             let end = targets.first().map_or(end, |&first| end.min(first));
-            // A NOP aligns what follows.
+            // A NOP may align the code.
             if at >= end || (at + 2 == end && self.image.code_at(at).starts_with(&NOP)) {
                 return Some(targets);
             }
@@ -210,7 +210,7 @@ impl<'a> Functions<'a> {
                 ([low, high, ..], 2) => u32::from(u16::from_le_bytes([*low, *high])),
                 _ => return None,
             };
-            // Nothing leads into the table: a byte that only fills it up.
+            // A target inside the table is padding.
             if entry != 0 {
                 targets.insert(start + 2 * entry);
             }
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(own(&[0xB510, 0xB082, 0xBF1C, 0xB002, 0xBD10, 0xB002, 0xBD10]), 16);
         // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; and what is below depends: add sp, #8; pop {r4, pc}
         let depends = &[0xB510, 0xBF0C, 0xB082, 0xB084, 0xB002, 0xBD10];
-        assert!(only_unknown(depends).contains("returns with something"));
+        assert!(only_unknown(depends).contains("returns without restoring"));
     }
 
     #[test]
@@ -323,9 +323,9 @@ mod tests {
         // nop; push {r0}; b to the push
         assert_eq!(only_unknown(&[0xBF00, 0xB401, 0xE7FD]), "the stack grows in a loop");
         // push {r4}; bx lr
-        assert!(only_unknown(&[0xB410, 0x4770]).contains("returns with something"));
+        assert!(only_unknown(&[0xB410, 0x4770]).contains("returns without restoring"));
         // pop {r4, pc} without a push
-        assert!(only_unknown(&[0xBD10]).contains("not its own"));
+        assert!(only_unknown(&[0xBD10]).contains("beyond its own frame"));
     }
 
     #[test]

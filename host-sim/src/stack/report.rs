@@ -1,4 +1,4 @@
-//! The budget of a chip's memory: statics, the deepest stack, and what is left.
+//! Memory budget of a chip: statics, deepest stack, and free memory.
 
 use super::calls::{Calls, Deepest};
 use super::description::{Description, Priority};
@@ -21,43 +21,42 @@ pub enum StackError {
     NoVectors(String),
 }
 
-/// What runs on the stack.
+/// Stack of a task.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Entry {
-    /// What it does.
+    /// Task.
     pub task: String,
     /// `thread`, a priority, or `fault`.
     pub priority: String,
-    /// Its deepest path, without what the core pushes before it.
+    /// Its deepest path, without the exception frame.
     pub deepest: Deepest,
 }
 
-/// What a program takes of its chip's memory, bytes.
+/// Memory budget of a program, bytes.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Report {
-    /// All that runs.
+    /// All tasks.
     pub entries: Vec<Entry>,
-    /// What the core pushes when all of them interrupt each other.
+    /// Exception frames when all tasks are nested.
     pub core_frames: u32,
-    /// All of them interrupting each other.
+    /// Deepest stack, all tasks nested.
     pub stack: u32,
-    /// From the first address of memory to where the stack begins.
+    /// Memory reserved for the stack.
     pub room_for_stack: u32,
-    /// Everything in memory that is not the stack.
+    /// Statics.
     pub statics: u32,
-    /// Memory of the chip.
+    /// RAM of the chip.
     pub ram: u32,
-    /// What neither takes.
+    /// Free memory.
     pub free: u32,
-    /// What is wrong or unknown.
+    /// Violations and unknowns.
     pub problems: Vec<String>,
 }
 
-/// What the core pushes before a handler: 26 words with those of the floating-point unit, for which it keeps room in
-/// any case, and one to align them.
+/// Exception frame: 26 words with the FPU's, which are always reserved, and one of alignment.
 const EXCEPTION_FRAME: u32 = 26 * 4 + 4;
 
-/// Computes what an image takes.
+/// Computes the budget of an image.
 pub fn report(path: &Path, description: &Description) -> Result<Report, StackError> {
     let image = Image::read(path)?;
     let mut functions = Functions::new(&image)?;
@@ -107,12 +106,12 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
     let steps = entries.iter().flat_map(|entry| &entry.deepest.path);
     for step in steps.filter(|step| step.bytes > description.ram.guard_bytes) {
         problems.insert(format!(
-            "{} takes {} B: it may step over the {} B below memory",
+            "{} takes {} B: it may skip the {} B guard below RAM",
             step.function, step.bytes, description.ram.guard_bytes
         ));
     }
 
-    // Each priority once, and what is unexpected on top of all.
+    // One handler per priority, and the fault handlers on top.
     let interruptions = levels.len() as u32 + 1;
     let core_frames = interruptions * EXCEPTION_FRAME;
     let stack = of_boot.bytes.max(of_idle.bytes)
@@ -123,7 +122,7 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
     let ram = description.ram.bytes;
     let free = ram.saturating_sub(statics + stack);
     if stack > room_for_stack {
-        problems.insert(format!("the stack takes {stack} B, and has {room_for_stack}"));
+        problems.insert(format!("the stack needs {stack} B and has {room_for_stack}"));
     }
     let least = description.ram.least_free_percent;
     if u64::from(free) * 100 < u64::from(ram) * u64::from(least) {
@@ -133,7 +132,7 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
     Ok(Report { entries, core_frames, stack, room_for_stack, statics, ram, free, problems })
 }
 
-/// The described vectors' functions, and where the stack begins.
+/// Functions of the described vectors, and the initial stack pointer.
 fn vectors(
     image: &Image,
     description: &Description,
@@ -145,7 +144,7 @@ fn vectors(
     let word = |index: u32| image.word_at(table.address + 4 * index).unwrap_or(0);
     let name = |index: u32| {
         let function = image.function_at(word(index) & !1);
-        function.map_or("nothing that is known", |function| function.name.as_str())
+        function.map_or("unknown", |function| function.name.as_str())
     };
     let mut found = BTreeMap::new();
     let mut expected = BTreeMap::from([(1, description.thread.entry.as_str())]);
@@ -158,17 +157,17 @@ fn vectors(
         let expected = expected.remove(&index).unwrap_or(&description.default_handler);
         if name(index) != expected {
             let name = name(index);
-            problems.insert(format!("vector {index} is {name}, and described as {expected}"));
+            problems.insert(format!("vector {index} is {name}, described as {expected}"));
         }
         found.insert(index, word(index) & !1);
     }
     for (index, function) in expected {
-        problems.insert(format!("vector {index}, described as {function}, is not there"));
+        problems.insert(format!("vector {index}, described as {function}, does not exist"));
     }
     Ok((found, word(0)))
 }
 
-/// Bytes of statics, and of what is below where the stack begins.
+/// Bytes of statics, and bytes below the initial stack pointer.
 fn memory(
     image: &Image,
     description: &Description,
@@ -180,11 +179,14 @@ fn memory(
     for section in image.sections().iter().filter(|section| ram.contains(&section.address)) {
         statics += section.size;
         if section.address < top && section.size > 0 {
-            problems.insert(format!("{} is below the stack, which may overflow", section.name));
+            problems.insert(format!(
+                "{} is below the stack: an overflow would overwrite it",
+                section.name
+            ));
         }
     }
     if !(ram.start..=ram.end).contains(&top) {
-        problems.insert(format!("the stack begins at {top:#010x}, outside of memory"));
+        problems.insert(format!("the stack begins at {top:#010x}, outside RAM"));
     }
     (statics, top.saturating_sub(ram.start))
 }
