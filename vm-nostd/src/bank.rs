@@ -1,4 +1,4 @@
-//! Several muscles, continuous or FES, stepped by one call.
+//! A bank of muscles, continuous or FES, that one call steps.
 
 use crate::muscle::{ContinuousMuscle, FesMuscle, Input, Output};
 use crate::recruitment::{IntramuscularFes, NaturalContinuous};
@@ -9,7 +9,7 @@ use heapless::Vec;
 
 /// A muscle with its state.
 #[derive(Clone, Copy, Debug)]
-// The modes differ by a few words in a kilobyte.
+// The variants differ by a few words of a kilobyte.
 #[allow(clippy::large_enum_variant)]
 pub enum BankedMuscle<S: Scalar, const N: usize> {
     /// Under natural continuous recruitment.
@@ -44,10 +44,10 @@ impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
     }
 }
 
-/// The bank was full already.
+/// The bank was full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BankFull {
-    /// How many muscles it holds.
+    /// Its capacity.
     pub capacity: usize,
 }
 
@@ -79,7 +79,7 @@ impl core::error::Error for BankFull {}
 /// let mut bank = Bank::<Fixed, 2, 8>::new();
 /// bank.add(BankedMuscle::Fes(muscle, state))?;
 ///
-/// // Every tick: an input for each place, of which those that are taken count.
+/// // Every tick: an input for each place; those of empty places are ignored.
 /// let mut inputs = [rest; 8];
 /// inputs[0] = Input::<Fixed>::from_integers(500, 160_000, 250);
 /// let outputs = bank.step(&inputs);
@@ -97,7 +97,7 @@ impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
         Self { muscles: Vec::new() }
     }
 
-    /// Adds a muscle and returns its place, the lowest that is free; refused if none is.
+    /// Adds a muscle and returns its place, the lowest free one; an error if the bank is full.
     pub fn add(&mut self, muscle: BankedMuscle<S, N>) -> Result<usize, BankFull> {
         let place = self.muscles.len();
         self.muscles.push(muscle).map_err(|_| BankFull { capacity: CAPACITY })?;
@@ -109,10 +109,9 @@ impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
         &self.muscles
     }
 
-    /// Steps all muscles by one tick; the outputs are in the order of the muscles' places.
+    /// Steps all muscles by one tick; the outputs are in the order of places.
     ///
-    /// Each muscle takes the input of its own place. Never fails, and takes as long as the steps
-    /// of its muscles.
+    /// Each muscle takes the input of its place. It cannot fail, and takes the time of its muscles' steps.
     pub fn step(&mut self, inputs: &[Input<S>; CAPACITY]) -> Vec<Output<S>, CAPACITY> {
         self.muscles.iter_mut().zip(inputs).map(|(muscle, input)| muscle.step(*input)).collect()
     }

@@ -1,34 +1,33 @@
-//! A checksum over constants and state, so that firmware sees a bit that memory has lost before it becomes a
-//! force.
+//! A checksum over coefficients and state, with which firmware detects a flipped bit in RAM.
 //!
-//! Words are taken in one by one, h <- (rotate(h, 5) xor word) k with k odd: for a given h every other word
-//! gives another h, and for a given word every other h. One word that differs is therefore always seen, and
-//! several are missed with a chance of about 2^-32.
+//! For each word, h <- (rotate(h, 5) xor word) k with k odd. This is a bijection of h for a given word and
+//! of the word for a given h: one changed word is always detected, several are missed with a probability
+//! of about 2^-32.
 
-/// A sum over words.
+/// A checksum of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(u32);
 
-/// Odd, and its bits look random: 2^32 over the golden ratio.
+/// Odd, with well-mixed bits: 2^32 over the golden ratio.
 const FACTOR: u32 = 0x9E37_79B1;
 
 impl Checksum {
-    /// Of no words.
+    /// The checksum of no words.
     pub const EMPTY: Self = Self(0);
 
-    /// Takes in a word.
+    /// Adds a word.
     #[inline]
     pub fn add(&mut self, word: u32) {
         self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(FACTOR);
     }
 
-    /// The sum so far.
+    /// The checksum.
     pub fn value(self) -> u32 {
         self.0
     }
 }
 
-/// Constants whose every bit can be summed.
+/// Values with a checksum over all of their bits.
 #[doc(hidden)]
 pub trait Summed {
     /// Adds all of its bits.
@@ -84,7 +83,7 @@ impl Summed for f64 {
     }
 }
 
-/// Implements [`Summed`] for a struct, naming all of its fields: one that is forgotten does not compile.
+/// Implements [`Summed`] for a struct by naming all fields; a missing field does not compile.
 macro_rules! summed {
     ([$($generics:tt)*] $type:ty { $($field:ident),* $(,)? }) => {
         impl<$($generics)*> $crate::checksum::Summed for $type {
@@ -126,7 +125,7 @@ mod tests {
         assert_ne!(sum(&[1, 2]), sum(&[2, 1]));
     }
 
-    /// Every coefficient that depends on a parameter is in the sum: change any parameter a little.
+    /// A small change of any parameter changes the checksum.
     fn parameters_are_in_the_sum<S: Scalar>() {
         let muscle = PAPER_MUSCLE;
         let step = TimeStep::MILLISECOND;
@@ -160,7 +159,7 @@ mod tests {
         check("fascicle_length", &|m| m.fascicle_length *= 1.01, all);
         check("tendon_length", &|m| m.tendon_length *= 1.01, all);
         check("max_path_length", &|m| m.max_path_length *= 1.01, all);
-        // FES has no thresholds, and only there frequency is in pps.
+        // FES has no thresholds, and only FES has a frequency in pps.
         check("recruitment_saturation", &|m| m.recruitment_saturation = 0.7, &[0, 2, 3]);
         check("tendon.stiffness", &|m| m.elements.tendon.stiffness *= 1.01, all);
         check("tendon.toe", &|m| m.elements.tendon.toe *= 1.01, all);

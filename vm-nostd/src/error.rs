@@ -5,10 +5,10 @@ use core::fmt;
 /// A parameter that was refused, with its value and the limit it broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
-    /// The parameter, by the name of its field. Where not a field but what follows from it is
-    /// refused, that stands behind a colon, and `value` and `limit` are its own.
+    /// The parameter's field. If a derived quantity is refused, its name follows after a colon, and `value`
+    /// and `limit` are those of the derived quantity.
     pub field: &'static str,
-    /// Which fibre type it belongs to, counted from 0; `None` for the muscle's own.
+    /// Index of the fibre type; `None` for the muscle's own parameters.
     pub fiber: Option<usize>,
     /// The refused value, in the field's unit.
     pub value: f64,
@@ -16,7 +16,7 @@ pub struct ParameterError {
     pub limit: Limit,
 }
 
-/// What a parameter must be, in its field's unit.
+/// Limit of a parameter, in its field's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -38,7 +38,7 @@ pub enum Limit {
         /// The rank of the type before.
         rank: f64,
     },
-    /// A whole number of at least 1 was needed.
+    /// A whole number of at least 1.
     AtLeastOneType,
 }
 
@@ -68,7 +68,7 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Accepts `value` if it lies within the bounds; anything else, not-a-number included, is refused.
+/// Accepts `value` within the bounds; refuses all else, NaN included.
 pub(crate) fn within(
     field: &'static str,
     value: f64,

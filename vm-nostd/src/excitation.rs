@@ -1,4 +1,4 @@
-//! Rise and fall of excitation: two lags in a row with one time constant,
+//! Rise and fall of excitation: two first-order lags in series with one time constant,
 //! df_int/dt = (drive - f_int)/Tf, df_eff/dt = (f_int - f_eff)/Tf.
 //!
 //! Rising (f_int >= f_eff): Tf = Tf1 L² + Tf2 f_env; falling: Tf = (Tf3 + Tf4 Af)/L.
@@ -38,7 +38,7 @@ impl ExcitationParams {
 /// The two lags of one fibre type.
 #[derive(Clone, Copy, Debug)]
 pub struct Excitation<S: Scalar> {
-    /// A tick, in the unit of the time constants, a power of two of ticks.
+    /// A tick in the unit of the time constants, which is a power of two of ticks.
     tick: S,
     // Time constants in that unit.
     rise: S,
@@ -49,23 +49,23 @@ pub struct Excitation<S: Scalar> {
 
 summed!([S: Scalar] Excitation<S> { tick, rise, rise_per_frequency, fall, fall_per_activation });
 
-/// What one tick does to the two lags.
+/// The two lags after a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Excited<S: Scalar> {
     /// f_int at the tick's end.
     pub(crate) intermediate: S::Slow,
-    /// f_eff at the tick's middle.
+    /// f_eff at mid-tick.
     pub(crate) effective_at_middle: S,
     /// f_eff at the tick's end.
     pub(crate) effective: S::Slow,
 }
 
-/// No fascicle is longer or shorter (L_ce0), and no frequency higher (f0.5), when time constants are
-/// chosen a unit for; what is beyond saturates.
+/// Range of fascicle length (L_ce0) and frequency (f0.5) for which the unit of time constants is
+/// chosen; beyond it they saturate.
 const LONGEST_FASCICLE: f64 = 2.0;
 const SHORTEST_FASCICLE: f64 = 0.4;
 const HIGHEST_FREQUENCY: f64 = 100.0;
-/// The greatest that a time constant should be in its unit.
+/// Greatest time constant, in its unit.
 const ROOM: f64 = 100.0;
 
 impl<S: Scalar> Excitation<S> {
@@ -88,10 +88,10 @@ impl<S: Scalar> Excitation<S> {
 
     /// One tick from (`intermediate`, `effective`) towards `drive`.
     ///
-    /// `frequency` is f_env, `slowing` what multiplies Tf4, both taken, like the fascicle's `length`, at
-    /// the tick's middle; `reciprocal` is that of the nearest length where the filaments' equations hold. In
-    /// the variable x = ∫dt/Tf the two lags are linear and solved exactly; where f_int and f_eff cross
-    /// within the tick, x is put together from both sides.
+    /// `frequency` is f_env, `slowing` the factor of Tf4; both, and the fascicle's `length`, are mid-tick
+    /// values. `reciprocal` is 1/length, clamped to the validity range of the filaments' equations. In
+    /// the variable x = ∫dt/Tf the two lags are linear and solved exactly; if f_int and f_eff cross
+    /// within the tick, x is the sum of both parts.
     #[inline(always)]
     pub(crate) fn advance(
         &self,
@@ -108,8 +108,8 @@ impl<S: Scalar> Excitation<S> {
         let excess = S::of(intermediate) - drive;
         let rises = lead >= S::ZERO;
         let (now, then) = if rises { (rising, falling) } else { (falling, rising) };
-        // f_int - f_eff = (lead - excess x) exp(-x): it changes sign at x = lead/excess. Until then
-        // x grows at one rate, and for what is left of the tick at the other.
+        // f_int - f_eff = (lead - excess x) exp(-x) changes sign at x = lead/excess. x grows at one
+        // rate until then, and at the other for the rest of the tick.
         let converging = rises == (excess > S::ZERO);
         let crosses = converging && lead.abs() * now < excess.abs() * self.tick;
         let (before, rest) =
@@ -121,7 +121,7 @@ impl<S: Scalar> Excitation<S> {
         let effective_after = |lags: Lags<S::Share>| {
             S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done))
         };
-        // What is kept is not below 0, not even by rounding.
+        // Rounding must not make the state negative.
         let end = effective_after(whole);
         Excited {
             intermediate: S::moved(intermediate, -excess, whole.done),

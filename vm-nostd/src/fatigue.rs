@@ -1,12 +1,12 @@
-//! Fatigue and recovery of a stimulated muscle, as a factor on its force: fitness, 1 when rested.
+//! Fatigue and recovery of a stimulated muscle: fitness, a factor on its force, 1 when rested.
 //!
 //! d fit/dt = (fit_min - fit) a λ/T_fat + (1 - fit)(1 - a λ)/T_rec,
 //! λ = 1 - β + β (f/100 pps)², and 1 from 100 pps on,
-//! a being the activation and f the stimulation frequency.
+//! with the activation a and the stimulation frequency f.
 //!
 //! Source: Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167; without dependence on frequency,
-//! Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is no part of Virtual Muscle: a muscle
-//! that is stepped without it keeps every bit.
+//! Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is not part of Virtual Muscle: without it
+//! a muscle keeps every bit.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Range, admit_one};
@@ -20,7 +20,7 @@ use crate::time_step::TimeStep;
 /// From this frequency on, λ is 1; pps.
 const SATURATING_FREQUENCY: f64 = 100.0;
 
-/// How fast a muscle tires, and recovers.
+/// Parameters of fatigue and recovery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FatigueParams {
@@ -30,17 +30,17 @@ pub struct FatigueParams {
     /// Time constant T_rec of recovery at rest, s; 1 to 1,000.
     #[doc(alias = "T_rec")]
     pub recovery_time: f64,
-    /// Fitness fit_min that is left in the end; 0 to 1.
+    /// Least fitness fit_min; 0 to 1.
     #[doc(alias = "fit_min")]
     pub least_fitness: f64,
-    /// How much less slow stimulation tires β; 0 (as much as fast) to 1.
+    /// Dependence on frequency β; 0 (none) to 1.
     #[doc(alias = "beta")]
     pub frequency_dependence: f64,
 }
 
 impl FatigueParams {
-    /// The paralysed human quadriceps of Riener, Quintern & Schmidt (1996). Fatigue differs between
-    /// muscles, patients and weeks of training more than any other parameter here: identify it.
+    /// Paralysed human quadriceps (Riener, Quintern & Schmidt 1996). Fatigue differs between muscles,
+    /// patients and weeks of training more than any other parameter here: identify it.
     pub const QUADRICEPS: Self = Self {
         fatigue_time: 18.0,
         recovery_time: 30.0,
@@ -48,7 +48,7 @@ impl FatigueParams {
         frequency_dependence: 0.6,
     };
 
-    /// Whether a muscle can tire like that; the error names the field, its value and the limit it broke.
+    /// Validates the parameters; the error has field, value and limit.
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("fatigue_time", self.fatigue_time, 1.0, 1000.0)?;
         within("recovery_time", self.recovery_time, 1.0, 1000.0)?;
@@ -57,22 +57,22 @@ impl FatigueParams {
     }
 }
 
-/// How tired a muscle is: plain data, to be copied and saved.
+/// State of fatigue: plain data that can be copied and saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FatigueState<S: Scalar> {
-    /// Most of fit, in whole steps.
+    /// Fitness in whole steps.
     steps: S,
-    /// The rest of it: at 1, `f32` is too coarse for what a tick changes.
+    /// The remainder: near 1, the ULP of `f32` exceeds the change of a tick.
     rest: S::Slow,
 }
 
 impl<S: Scalar> FatigueState<S> {
-    /// How many words [`words`](Self::words) gives.
+    /// Number of [`words`](Self::words).
     pub const WORDS: usize = 1 + S::SLOW_WORDS;
-    /// How many words it is saved in: whose it is, and all of it.
+    /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
-    /// The bits, for comparison. For storage [`Fatigue::save`] puts before them whose they are.
+    /// The bits, for comparison. [`Fatigue::save`] adds the fingerprint for storage.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         core::iter::once(self.steps.to_bits()).chain(S::slow_words(self.rest))
     }
@@ -83,16 +83,16 @@ impl<S: Scalar> FatigueState<S> {
     }
 }
 
-/// A step of fitness, of which 1 is a whole number.
+/// Step of fitness, a divisor of 1.
 const STEP: f64 = 1.0 / 16384.0;
 
-/// Fatigue and recovery, for a time step: constant coefficients.
+/// Coefficients of fatigue and recovery for a time step.
 ///
 /// ```
 /// use vm_nostd::{Fatigue, FatigueParams, TimeStep};
 /// let fatigue = Fatigue::<f32>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)?;
 /// let mut state = fatigue.rested();
-/// // Half a minute at 20 pps, and as long a rest.
+/// // 30 s at 20 pps, then 30 s of rest.
 /// for _ in 0..30_000 {
 ///     fatigue.advance(&mut state, 1.0, 20.0);
 /// }
@@ -111,22 +111,21 @@ pub struct Fatigue<S: Scalar> {
     per_saturating_frequency: S::Factor,
     least_fitness: S,
     frequency_dependence: S,
-    /// What a tick takes of the way to the least fitness, and to 1.
+    /// Shares of the distance to the least fitness and to 1 per tick.
     tire: S::Share,
     recover: S::Share,
     step: S,
-    /// All of something.
+    /// A share of 1.
     all: S::Share,
 }
 
 summed!([S: Scalar] Fatigue<S> { activation, frequency, per_saturating_frequency, least_fitness, frequency_dependence, tire, recover, step, all });
 
-/// Tells a saved fatigue from a saved muscle, of which this is no mode.
+/// Distinguishes saved fatigue from saved muscles: no mode has this number.
 const FATIGUE: u32 = 0;
 
 impl<S: Scalar> Fatigue<S> {
-    /// Builds fatigue for a time step, or refuses with the name of the field, its value and the limit it
-    /// broke.
+    /// Builds fatigue for a time step; the error has field, value and limit.
     pub fn build(params: &FatigueParams, step: TimeStep) -> Result<Self, ParameterError> {
         params.validate()?;
         let share = |time: f64| S::share(one_minus_exp(step.seconds() / time));
@@ -143,12 +142,12 @@ impl<S: Scalar> Fatigue<S> {
         })
     }
 
-    /// A muscle that has rested for long.
+    /// State of a rested muscle.
     pub fn rested(&self) -> FatigueState<S> {
         FatigueState { steps: S::ONE, rest: S::ZERO.slow() }
     }
 
-    /// What saved states begin with: it tells coefficients, time steps and arithmetics apart.
+    /// Fingerprint of coefficients, time step and arithmetic.
     fn fingerprint(&self) -> u32 {
         let mut fingerprint = Checksum::EMPTY;
         [S::ARITHMETIC, FATIGUE].into_iter().for_each(|word| fingerprint.add(word));
@@ -156,14 +155,14 @@ impl<S: Scalar> Fatigue<S> {
         fingerprint.value()
     }
 
-    /// The words to save a state in, [`FatigueState::SAVED_WORDS`] of them: a fingerprint of parameters, time step
-    /// and arithmetic, and [`FatigueState::words`].
+    /// The [`FatigueState::SAVED_WORDS`] words of a saved state: a fingerprint of parameters, time step and
+    /// arithmetic, then [`FatigueState::words`].
     pub fn save(&self, state: &FatigueState<S>) -> impl Iterator<Item = S::Bits> {
         core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
     }
 
-    /// A state saved by [`Fatigue::save`], refused unless it is of these parameters and time step, and one that a
-    /// muscle can be in.
+    /// Restores a state saved by [`Fatigue::save`]; an error if it is of other parameters or another time
+    /// step, or out of range.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
@@ -172,14 +171,14 @@ impl<S: Scalar> Fatigue<S> {
         let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
         let share = |value| self.activation.contains(value);
         let steps = saved.number(share)?;
-        // A tick may bring more than a step.
+        // A tick may change fitness by more than a step.
         let rest = saved.slow(&Range { least: -S::ONE, most: S::ONE })?;
         saved.finished()?;
         Ok(FatigueState { steps, rest })
     }
 
-    /// One tick at an activation (clipped to 0..1, not-a-number to 0) and a stimulation frequency, in pps
-    /// (clipped to 0..100; with natural recruitment, give 100). Returns the fitness that is left.
+    /// Advances by one tick at an activation (clipped to 0..1; NaN counts as 0) and a stimulation frequency in
+    /// pps (clipped to 0..100; pass 100 for natural recruitment). Returns the new fitness.
     pub fn advance(
         &self,
         state: &mut FatigueState<S>,
@@ -201,7 +200,7 @@ impl<S: Scalar> Fatigue<S> {
             ((self.least_fitness - fitness) * load, self.tire),
             ((S::ONE - fitness) * (S::ONE - load), self.recover),
         );
-        // What has become a step is counted as one.
+        // Whole steps are moved from the remainder.
         let rest = S::of(moved);
         let whole = if rest >= self.step {
             self.step

@@ -1,8 +1,8 @@
 //! Force-length relation of the filaments: FL = exp(-|(L^beta - 1)/omega|^rho).
 //!
-//! Of the power's logarithm, rho ln|(L^beta - 1)/omega|, only rho ln|L - 1| is not smooth. What is left,
-//! rho ln((L^beta - 1)/((L - 1) omega)), is a polynomial in L - 1: so all types share one logarithm
-//! and one reciprocal, and none raises L to a power in a tick.
+//! In the logarithm of the power, rho ln|(L^beta - 1)/omega|, only rho ln|L - 1| is not smooth. The rest,
+//! rho ln((L^beta - 1)/((L - 1) omega)), is approximated by a polynomial in L - 1. All types share one
+//! logarithm and one reciprocal, and no power of L is computed in a tick.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
@@ -32,9 +32,9 @@ impl ForceLengthParams {
     }
 }
 
-/// Terms of the polynomial: it leaves FL within 2e-6 for published types, and within 1.2e-4 for any.
+/// Terms of the polynomial: FL is within 2e-6 for published types, within 1.2e-4 for all valid ones.
 const TERMS: usize = 8;
-/// Where it is fitted, from -1 to 1: Chebyshev's nodes, cos((2 k + 1) π/16).
+/// Chebyshev nodes in -1..1: cos((2 k + 1) π/16).
 const NODES: [f64; TERMS] = [
     -0.980_785_280_403_230_4,
     -0.831_469_612_302_545_2,
@@ -47,7 +47,7 @@ const NODES: [f64; TERMS] = [
 ];
 
 impl ForceLengthParams {
-    /// rho ln((L^beta - 1)/((L - 1) omega)) by powers of L - 1, constant first, through its values at
+    /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first, interpolated at
     /// nodes between two lengths.
     fn smooth(&self, (shortest, longest): (f64, f64)) -> [f64; TERMS] {
         let (middle, half) = (0.5 * (shortest + longest), 0.5 * (longest - shortest));
@@ -60,7 +60,7 @@ impl ForceLengthParams {
                     / (nodes[last] - nodes[last - order]);
             }
         }
-        // From products of L - node to powers of L - 1.
+        // From the Newton form to powers of L - 1.
         let mut terms = [0.0; TERMS];
         for (difference, node) in differences.iter().zip(&nodes).rev() {
             let distance = 1.0 - node;
@@ -75,7 +75,7 @@ impl ForceLengthParams {
     /// rho ln((L^beta - 1)/((L - 1) omega)) at a length.
     fn smooth_at(&self, length: f64) -> f64 {
         let logarithm = Scalar::ln(length);
-        // |L^x - 1| less the factor L^x that it has above 1.
+        // |L^x - 1| without the factor L^x that it has above 1.
         let distance = |exponent: f64| one_minus_exp(exponent * logarithm.abs());
         let ratio =
             if logarithm == 0.0 { self.skewness } else { distance(self.skewness) / distance(1.0) };
@@ -84,8 +84,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Nearer to their optimal length (L_ce0) fascicles are taken to be as far as this from it, where FL is 1
-/// to 1e-4 at most, and to 2e-9 for the paper's types: the slope of |L - 1|^rho has a cusp.
+/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp at 0. FL is 1
+/// within 1e-4 there, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.
@@ -96,7 +96,7 @@ pub(crate) struct OptimalLength<S> {
 
 summed!([S: Scalar] OptimalLength<S> { nearest });
 
-/// Where fascicles are relative to their optimal length.
+/// Distance of the fascicles from their optimal length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Distance<S: Scalar> {
     /// L - 1, L_ce0.
@@ -112,7 +112,7 @@ impl<S: Scalar> OptimalLength<S> {
         Self { nearest: S::from_f64(NEAREST) }
     }
 
-    /// Where fascicles of a length (L_ce0) are.
+    /// For fascicles of a length (L_ce0).
     pub(crate) fn distance(&self, fascicle_length: S) -> Distance<S> {
         let offset = fascicle_length - S::ONE;
         let distance = offset.abs().max(self.nearest);
@@ -124,14 +124,14 @@ impl<S: Scalar> OptimalLength<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceLength<S: Scalar> {
     roundness: S,
-    /// rho ln((L^beta - 1)/((L - 1) omega)) by powers of L - 1, the constant first.
+    /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first.
     smooth: [S; TERMS],
 }
 
 summed!([S: Scalar] ForceLength<S> { roundness, smooth });
 
 impl<S: Scalar> ForceLength<S> {
-    /// FL between two fascicle lengths (L_ce0).
+    /// FL for fascicle lengths in a range (L_ce0).
     pub(crate) fn new(params: &ForceLengthParams, domain: (f64, f64)) -> Self {
         Self {
             roundness: S::from_f64(params.roundness),

@@ -1,4 +1,4 @@
-//! The passive elements: F_pe1, in parallel with the fascicles, and F_pe2, the thick filaments.
+//! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick filaments.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
@@ -39,8 +39,8 @@ pub struct CompressionParams {
     pub onset_length: f64,
 }
 
-/// The passive force is straight within a tick. Where nothing damps a passive muscle that rings, what
-/// it gains from this tick by tick would never be lost again.
+/// The passive force is linear within a tick. Without damping, the energy error of this in a passive muscle
+/// that rings would accumulate.
 const LEAST_VISCOSITY: f64 = 1e-3;
 
 impl ParallelParams {
@@ -115,9 +115,9 @@ impl<S: Scalar> Parallel<S> {
     }
 }
 
-/// F_pe2, shared by the fibre types; it counts in proportion to their activation.
+/// F_pe2, shared by the fibre types and weighted by their activation.
 ///
-/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), of which no part is large.
+/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), whose terms are small.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Compression<S: Scalar> {
     /// |c2|, F0.
@@ -132,7 +132,7 @@ pub(crate) struct Compression<S: Scalar> {
 
 summed!([S: Scalar] Compression<S> { strength, steepness, unit_length, slope });
 
-/// A strength (F0) that counts as none: its logarithm is still a number.
+/// A strength (F0) that counts as zero but has a logarithm.
 const NO_STRENGTH: f64 = 1e-9;
 
 impl<S: Scalar> Compression<S> {

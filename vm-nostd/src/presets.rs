@@ -1,6 +1,6 @@
 //! Published fibre types and shared elements.
 //!
-//! A test holds them against the tables `host-sim/data/fibers.csv` and `elements.csv`.
+//! A test compares them with `host-sim/data/fibers.csv` and `elements.csv`.
 
 use crate::activation::ActivationParams;
 use crate::excitation::ExcitationParams;

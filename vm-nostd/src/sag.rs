@@ -23,7 +23,7 @@ pub struct SagParams {
 }
 
 impl SagParams {
-    /// The frequency from which a type counts as firing, f0.5.
+    /// Frequency above which a type counts as firing, f0.5.
     pub(crate) const FIRING: f64 = 0.1;
 
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
@@ -45,7 +45,7 @@ summed!([S: Scalar] Sag<S> { resting_level, firing_level, lag });
 
 impl<S: Scalar> Sag<S> {
     pub(crate) fn new(params: Option<&SagParams>, step: TimeStep) -> Self {
-        // Without sag both levels are 1, and so is S from the start.
+        // Without sag both levels and S are 1.
         let (resting, firing, time_constant) =
             params.map_or((1.0, 1.0, 1.0), |p| (p.resting_level, p.firing_level, p.time_constant));
         Self {
@@ -55,20 +55,20 @@ impl<S: Scalar> Sag<S> {
         }
     }
 
-    /// Where S always is.
+    /// Range of S.
     pub(crate) fn range(&self) -> Range<S> {
         let (a, b) = (self.resting_level, self.firing_level);
         Range { least: a.min(b), most: a.max(b) }
     }
 
-    /// S at the tick's end, the type having been firing for a `share` (0..1) of it.
+    /// S at the tick's end if the type fired for a `share` (0..1) of the tick.
     pub(crate) fn advance(&self, sag: S::Slow, share: S) -> S::Slow {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;
         self.lag.at_end(sag, target)
     }
 }
 
-/// The share of a tick (0..1) that a frequency going from `start` to `end` is at or above `level`.
+/// Share of a tick (0..1) in which a frequency from `start` to `end` is at or above `level`.
 pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
     if start >= level {
         if end >= level { S::ONE } else { (start - level).ratio(start - end) }

@@ -1,15 +1,14 @@
-//! Steady states under intramuscular FES: the force that a stimulation holds, and the stimulation that
-//! holds a force.
+//! Steady state under intramuscular FES: the force of a stimulation, and the inverse.
 //!
-//! Where nothing moves, V = 0, Y = 1, FV = 1, f_eff = U, S = a_S2 of a type that fires, and the tendon's
-//! force is the fascicles':
+//! In steady state V = 0, Y = 1, FV = 1, f_eff = U, S = a_S2 of a firing type, and tendon and fascicles are in
+//! equilibrium:
 //!
 //! F_se = max(0, U Σ pcsa_i Af_i FL_i + max(0, F_pe1 + Σ pcsa_i Af_i F_pe2)).
 //!
-//! A wanted force tells the tendon's length, by the inverse of F_se, and with it that of the fascicles; at a
-//! given length and frequency all but U is then known. The inverse needs no search; only where the force
-//! cannot be had, the nearest that can be is found by halving, and where the tendon is so long that there might
-//! be several balances, the answer is tried that way.
+//! A wanted force gives the tendon's length, by the inverse of F_se, and with it the fascicle length; at a
+//! given length and frequency only U remains unknown. The inverse needs no search. If the force is
+//! unreachable, the nearest one is found by bisection; if the tendon is so long that there may be several
+//! equilibria, the result is checked by bisection.
 
 use crate::activation::ActivationFrequency;
 use crate::domain::{Domain, Status};
@@ -23,7 +22,7 @@ use crate::scalar::Scalar;
 use crate::tendon::{Tendon, TendonInverse};
 use crate::time_step::TimeStep;
 
-/// A muscle under intramuscular FES that has come to rest.
+/// Steady state of a muscle under intramuscular FES.
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyFes<S: Scalar, const N: usize> {
     domain: Domain<S>,
@@ -35,12 +34,12 @@ pub struct SteadyFes<S: Scalar, const N: usize> {
     tendon_inverse: TendonInverse<S>,
     firing: S,
     rounding: S,
-    /// The same for a force in N or mN, which may be half a step beyond.
+    /// Rounding tolerance of a force in N or mN: half a step.
     rounding_of_force: S,
     promised: S,
-    /// More than one balance cannot be ruled out.
+    /// There may be more than one equilibrium.
     ambiguous: bool,
-    /// N, and one over it.
+    /// F0, and its reciprocal.
     force: S::Factor,
     per_force: S::Factor,
 }
@@ -56,29 +55,29 @@ struct SteadyFiber<S: Scalar> {
     per_half_force_frequency: S::Factor,
 }
 
-/// What a stimulation holds.
+/// A steady state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steady<S: Scalar> {
     /// Activation U, 0..1.
     pub activation: S,
     /// The tendon's force, N (in fixed point: mN).
     pub force: S::Force,
-    /// The same relative to F0: in fixed point to 6e-8 F0.
+    /// Tendon force relative to F0: in fixed point with an ULP of 6e-8 F0.
     pub relative_force: S,
     /// L, L_ce0.
     pub fascicle_length: S,
-    /// What had to be saturated; [`Status::FORCE_UNREACHABLE`] where no activation holds the wanted force.
+    /// Flags; [`Status::FORCE_UNREACHABLE`] if no activation holds the wanted force.
     pub status: Status,
 }
 
-/// Where the fascicles are, and what pulls on them.
+/// Fascicles and their forces.
 #[derive(Clone, Copy, Debug)]
 struct Balance<S> {
     /// U Σ pcsa Af FL for U = 1, F0.
     active: S,
     /// max(0, F_pe1 + Σ pcsa Af F_pe2), F0.
     passive: S,
-    /// F_se, F0, and whether it is more than can be told.
+    /// F_se, F0, and whether it saturated.
     tendon: S,
     saturated: bool,
     fascicle_length: S,
@@ -92,20 +91,20 @@ impl<S: Scalar> Steady<S> {
     }
 }
 
-/// Halvings that bring a length to its last bit.
+/// Bisections that bring a length to its last bit.
 const HALVINGS: usize = 40;
-/// A force that is so little beyond what can be held counts as held, F0: a tenth of what is promised.
+/// Tolerance within which a force counts as reachable, F0: a tenth of the promised accuracy.
 const ROUNDING: f64 = 1e-4;
-/// How far the force that an activation holds may be from the one it was found for, F0.
+/// Tolerance of the held force, F0.
 const PROMISED: f64 = 1e-3;
-/// With longer tendons, in fascicle lengths, the fascicles can pull less the further they lengthen by more than
-/// the tendon does: there may be several lengths at which they balance, not all of them stable.
+/// Above this tendon length, in fascicle lengths, the descending limb of FL may be steeper than the tendon is
+/// stiff: there may be several equilibria, some unstable.
 const LONGEST_PLAIN_TENDON: f64 = 5.0;
 
 impl<S: Scalar, const N: usize> SteadyFes<S, N> {
-    /// Builds the steady states of a muscle, or refuses what [`FesMuscle`] refuses.
+    /// Builds from the parameters of a muscle; refuses what [`FesMuscle`] refuses.
     pub fn build(params: &MuscleParams<N>) -> Result<Self, ParameterError> {
-        // What a step has to do with does not move here.
+        // The time step has no effect here.
         let step = TimeStep::MILLISECOND;
         FesMuscle::<S, N>::build(params, step)?;
         let elements = &params.elements;
@@ -139,16 +138,15 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         })
     }
 
-    /// The force that an input holds, once nothing changes any more. A path that is not a number is taken as the
-    /// longest.
+    /// Steady force of an input. A path that is NaN counts as the longest.
     pub fn force(&self, input: Input<S>) -> Steady<S> {
         let (input, status) = self.domain.admit(input, self.domain.path_length.most);
         self.settled(input, status)
     }
 
-    /// The activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency: within
-    /// 0.1 % of F0 where one does. Where none does, the status says so, and activation and force are the
-    /// nearest that there are; not-a-number is nearest to nothing, and a path that is none is taken as the longest.
+    /// Activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency, within 0.1 % of
+    /// F0. If there is none, the status is flagged, and activation and force are the nearest ones. A force
+    /// that is NaN counts as 0, a path as the longest.
     pub fn activation_for(
         &self,
         force: S::Force,
@@ -160,7 +158,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, rounding, path_length, stimulation_frequency)
     }
 
-    /// The same for a force relative to F0: in fixed point finer than in mN, where F0 is a few newtons.
+    /// The same for a force relative to F0: in fixed point finer than mN if F0 is a few newtons.
     pub fn activation_for_relative(
         &self,
         wanted: S,
@@ -170,7 +168,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, self.rounding, path_length, stimulation_frequency)
     }
 
-    /// What holds a force (F0); one that is beyond what can be held by `rounding` counts as held.
+    /// Steady state at a force (F0); one that exceeds the reachable force by `rounding` counts as reachable.
     fn holding(
         &self,
         wanted: S,
@@ -199,13 +197,13 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         }
     }
 
-    /// The activation with which a force is in balance, if there is one.
+    /// Activation in equilibrium with a force, if there is one.
     fn balanced(&self, wanted: S, input: &Input<S>, status: Status) -> Option<Steady<S>> {
         let extension = self.tendon_inverse.extension(wanted);
         let length = self.tendon.fascicle_length(input.path_length, extension);
         let balance = self.balance(input, extension);
         let missing = wanted - balance.passive;
-        // A force that is not above 0 has no length, and nor has one that would need no fascicles.
+        // No tendon length for a force of 0, or for one that leaves no room for fascicles.
         let possible = wanted > S::ZERO && self.domain.fascicle_length.contains(length);
         if possible && missing >= S::ZERO && missing <= balance.active {
             let activation = missing.ratio(balance.active.max(S::LEAST)).min(S::ONE);
@@ -229,13 +227,13 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         }
     }
 
-    /// Where an admitted input settles: the tendon pulls more the further it is extended, and but for the
-    /// longest tendons the fascicles less, or not so much more.
+    /// Equilibrium of an admitted input by bisection: the net force is monotonic in the extension, except with the
+    /// longest tendons.
     fn settled(&self, input: Input<S>, status: Status) -> Steady<S> {
         let lengths = &self.domain.fascicle_length;
         let mut least = self.tendon.extension(input.path_length, lengths.most);
         let mut most = self.tendon.extension(input.path_length, lengths.least);
-        // Whether either end was ever left.
+        // Whether each end has moved.
         let (mut longer, mut shorter) = (false, false);
         for _ in 0..HALVINGS {
             let extension = (least + most).half();
@@ -252,7 +250,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         steady
     }
 
-    /// The forces with the tendon at an extension.
+    /// Forces at a tendon extension.
     fn balance(&self, input: &Input<S>, extension: S) -> Balance<S> {
         let fascicle_length = self.tendon.fascicle_length(input.path_length, extension);
         let (length, _) = self.domain.fascicle_length.clip(fascicle_length);

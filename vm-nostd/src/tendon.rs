@@ -44,11 +44,10 @@ pub(crate) fn softplus_inverse(x: f64) -> f64 {
     x + Scalar::ln(one_minus_exp(x))
 }
 
-/// The tendon of one muscle. Its extension beyond slack is counted in L_ce0, as lengths of the
-/// fascicles are.
+/// Tendon of one muscle. Its extension beyond slack is in L_ce0, like fascicle lengths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tendon<S: Scalar> {
-    /// LrT L_se0: the path that the slack tendon takes up.
+    /// LrT L_se0: the slack length, m.
     slack_path: S::PathLength,
     /// 1/L_ce0, per m.
     per_path: S::Factor,
@@ -62,14 +61,14 @@ pub(crate) struct Tendon<S: Scalar> {
 
 summed!([S: Scalar] Tendon<S> { slack_path, per_path, per_toe, force, stiffness });
 
-/// What a tendon does at an extension.
+/// Tendon force and stiffness at an extension.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pull<S> {
     /// F0.
     pub(crate) force: S,
-    /// How much less it is per tick that the fascicles lengthen at 1 L_ce0/s, F0.
+    /// Decrease per tick of fascicles lengthening at 1 L_ce0/s, F0.
     pub(crate) stiffness: S,
-    /// The extension is beyond what can be told.
+    /// The extension saturated.
     pub(crate) saturated: bool,
 }
 
@@ -90,7 +89,7 @@ impl<S: Scalar> TendonInverse<S> {
         }
     }
 
-    /// Extension (L_ce0) at a force (F0); for none, that of the least force there is.
+    /// Extension (L_ce0) at a force (F0); for 0, that of the least representable force.
     pub(crate) fn extension(&self, force: S) -> S {
         let toes = force.max(S::LEAST).scaled(&self.per_force).max(S::LEAST);
         (toes + (S::ONE - (-toes).exp()).max(S::LEAST).ln()).scaled(&self.toe)

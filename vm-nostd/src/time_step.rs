@@ -2,7 +2,7 @@
 
 use crate::error::{ParameterError, within};
 
-/// Time between two ticks, 0.1 ms to 2 ms. Coefficients are computed for it once, at build.
+/// Time between two ticks, 0.1 ms to 2 ms. Coefficients are computed for it when a muscle is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStep(f64);
 
@@ -14,7 +14,7 @@ impl TimeStep {
     /// Longest step, s.
     pub const LONGEST: f64 = 2e-3;
 
-    /// A step of `seconds`, refused outside [`SHORTEST`](Self::SHORTEST) to
+    /// A step of `seconds`; an error outside [`SHORTEST`](Self::SHORTEST) to
     /// [`LONGEST`](Self::LONGEST).
     pub fn from_seconds(seconds: f64) -> Result<Self, ParameterError> {
         within("time_step", seconds, Self::SHORTEST, Self::LONGEST)?;

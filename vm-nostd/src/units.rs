@@ -1,4 +1,4 @@
-//! Inputs in the integer units that firmware has.
+//! Inputs in integer units.
 
 use crate::muscle::Input;
 use crate::scalar::fixed::Fixed;
@@ -13,9 +13,9 @@ impl Input<Fixed> {
     /// Inputs from integers: activation in thousandths, path length in µm, stimulation frequency
     /// in tenths of a pulse per second.
     ///
-    /// Every µm is held exactly; thousandths and tenths, which no binary fraction is, to the
-    /// nearest one. What is outside the muscle's domain is saturated and flagged by the tick, as
-    /// for any input; a path beyond ±4.19 m is taken as that already here.
+    /// Path lengths are exact; thousandths and tenths are rounded to nearest. Values outside the
+    /// muscle's domain are clipped and flagged by the tick, like any input; a path beyond ±4.19 m
+    /// is clipped here.
     ///
     /// ```
     /// use vm_nostd::{Fixed, Input};
