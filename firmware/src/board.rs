@@ -1,8 +1,8 @@
-//! The chip and its pins: an STM32F405. No other file names one.
+//! The chip and its pins: an STM32F405. Only this file and its folder name the chip.
 //!
 //! | what | where |
 //! |---|---|
-//! | converter (MCP4921's kind; nothing is read back from it) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
+//! | converter (like MCP4921; no readback) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
 //! | bridge | cathodic PB0, anodic PB1 |
 //! | channels | PC0, PC1, PC2, PC3 |
 //! | link | USART1: TX PA9, RX PA10, 115,200 Bd |
@@ -34,26 +34,26 @@ use stm32f4xx_hal::serial::{Config, Rx, Serial, Tx};
 use stm32f4xx_hal::spi::{self, Spi};
 pub use watchdog::Watchdog;
 
-/// A pin that is driven.
+/// An output pin.
 pub type Pin = ErasedPin<Output<PushPull>>;
 /// The converter.
 pub type Converter = ExclusiveDevice<Spi<SPI1>, Pin, NoDelay>;
 /// The output stage.
 pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
-/// Current source: 50 mA at the converter's 4095.
+/// Current source: 50 mA at 4095 counts.
 pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
-/// Of the link. A byte takes longer than a tick of two muscles, which runs above it: none is lost.
+/// Baud rate of the link. A byte takes longer than the tick that may delay its interrupt: none is lost.
 const BAUD: u32 = 115_200;
 
-/// Core clock of the part, and of the emulator's, Hz.
+/// Core clock of the part and of the emulator, Hz.
 const CORE_CLOCK: u32 = 168_000_000;
 /// The emulator's TIM2 counts ns.
 const EMULATED_TIMER_CLOCK: u32 = 1_000_000_000;
 
-/// All that the firmware runs on, in neutral.
+/// The board's peripherals, in neutral.
 pub struct Board {
-    /// In neutral; none if it does not answer.
+    /// Output stage, in neutral; none if it does not answer.
     pub stage: Option<Stage>,
     /// Stopped.
     pub pulse_timer: PulseTimer,
@@ -65,22 +65,22 @@ pub struct Board {
     pub to_host: ToHost,
     /// From the host.
     pub from_host: FromHost,
-    /// For what outlasts a loss of power.
+    /// Non-volatile memory.
     pub memory: Memory,
-    /// For the numbers of sessions.
+    /// Source of session numbers.
     pub numbers: Numbers,
-    /// Why it boots.
+    /// Cause of the boot.
     pub boot: Fault,
 }
 
-/// Whether this is an emulator: its reset and clock control reads 0. On a real part it cannot: a bit of the PLL's
-/// configuration is always 1.
+/// Whether this is QEMU, whose reset and clock control reads 0. On a real part a bit of the PLL configuration
+/// is always 1.
 fn is_emulated(rcc: &RCC) -> bool {
     rcc.cr().read().bits() == 0 && rcc.pllcfgr().read().bits() == 0
 }
 
 impl Board {
-    /// Outputs first, then everything else; ticks of so many µs.
+    /// Initialises the outputs first, then the rest; ticks of `tick_us` µs.
     pub fn start(
         mut core: cortex_m::Peripherals,
         device: pac::Peripherals,
@@ -161,12 +161,12 @@ impl Board {
     }
 }
 
-/// What the serial port got.
+/// Received by the serial port.
 #[derive(Clone, Copy)]
 pub enum Received {
     /// A byte.
     Byte(u8),
-    /// One was lost, or came as none.
+    /// A byte was lost or damaged.
     Lost,
 }
 
@@ -174,7 +174,7 @@ pub enum Received {
 pub struct FromHost(Rx<USART1>);
 
 impl FromHost {
-    /// What has come, if anything.
+    /// Next received byte, if any.
     pub fn read(&mut self) -> Option<Received> {
         match self.0.read() {
             Ok(byte) => Some(Received::Byte(byte)),
@@ -188,26 +188,26 @@ impl FromHost {
 pub struct ToHost(Tx<USART1>);
 
 impl ToHost {
-    /// Whether a byte can be given.
+    /// Whether it can take a byte.
     pub fn is_ready(&self) -> bool {
         self.0.is_tx_empty()
     }
 
-    /// Gives it a byte.
+    /// Sends a byte.
     pub fn write(&mut self, byte: u8) {
         let _it_was_ready = self.0.write(byte);
     }
 }
 
-/// Starts again: everything is off at boot.
+/// Resets the chip: everything is off at boot.
 pub fn reset() -> ! {
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-/// The timer that says when a step of the schedule ends.
+/// Timer of the schedule's steps.
 ///
-/// Its reload is buffered: what is written during a step counts from its end on, so that no interrupt's delay
-/// changes how long a phase lasts.
+/// Its reload is buffered: a value written during a step takes effect at its end, so that the delay of an
+/// interrupt does not change the duration of a phase.
 pub struct PulseTimer {
     timer: TIM2,
     is_emulated: bool,
@@ -245,7 +245,7 @@ impl PulseTimer {
         self.set_next(Pulses::<Converter, Pin>::FIRST_US);
     }
 
-    /// Whether it has run out since this was asked last.
+    /// Whether it has expired since the last call.
     pub fn has_run_out(&mut self) -> bool {
         let has = self.timer.sr().read().uif().bit_is_set();
         if has {
@@ -254,25 +254,25 @@ impl PulseTimer {
         has
     }
 
-    /// Whether it has run out again, which stays to be asked.
+    /// Whether it has expired again; does not clear that.
     pub fn is_late(&self) -> bool {
         self.timer.sr().read().uif().bit_is_set()
     }
 
-    /// How long the step after this one lasts, µs.
+    /// Sets the duration of the step after the current one, µs.
     pub fn set_next(&mut self, duration_us: u32) {
         self.timer.arr().write(|w| w.arr().set(duration_us.saturating_sub(1)));
     }
 }
 
-/// The timer that calls for ticks: counts the core's clock down.
+/// Timer of ticks: counts down the core clock.
 pub struct TickTimer {
     timer: SYST,
     reload: u32,
 }
 
 impl TickTimer {
-    /// Counts in a µs.
+    /// Counts per µs.
     pub const COUNTS_PER_US: u32 = CORE_CLOCK / 1_000_000;
 
     fn new(mut timer: SYST, tick_us: u32) -> Self {
@@ -283,18 +283,18 @@ impl TickTimer {
         Self { timer, reload }
     }
 
-    /// Starts; the first tick comes after a whole period.
+    /// Starts; the first tick is due after a whole period.
     pub fn start(&mut self) {
         self.timer.enable_counter();
         self.timer.enable_interrupt();
     }
 
-    /// Counts since a tick was due last.
+    /// Counts since the last tick was due.
     pub fn since_due(&self) -> u32 {
         self.reload.saturating_sub(SYST::get_current())
     }
 
-    /// Whether one was due since this was asked last.
+    /// Whether a tick was due since the last call.
     pub fn was_due(&mut self) -> bool {
         self.timer.has_wrapped()
     }

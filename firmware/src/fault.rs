@@ -1,60 +1,60 @@
-//! What can go wrong, by name.
+//! Names of faults.
 
 use serde::{Deserialize, Serialize};
 
-/// What went wrong.
+/// A latched fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Fault {
-    /// Nothing yet: this is how everything starts.
+    /// After every start, also after a stack overflow or a fault of the core.
     Boot,
-    /// An amplitude beyond its limit was asked for.
+    /// A request exceeded the amplitude limit.
     Amplitude,
-    /// A width.
+    /// A request exceeded the width limit.
     Width,
-    /// A frequency.
+    /// A request exceeded the frequency limit.
     Frequency,
-    /// A charge per phase.
+    /// A request exceeded the limit of charge per phase.
     Charge,
-    /// A mean square of current.
+    /// A request exceeded the limit of r.m.s. current.
     RootMeanSquare,
-    /// Stimulation without a rest has lasted as long as it may.
+    /// The session of stimulation without a rest reached its limit.
     Session,
-    /// The host was silent for too long.
+    /// The host was silent for longer than its limit.
     Silence,
-    /// An electrode is shorted.
+    /// An electrode's impedance is below its limit.
     ElectrodeShort,
-    /// An electrode has come off.
+    /// An electrode's impedance is above its limit.
     ElectrodeOpen,
-    /// The supply is out of its range.
+    /// The supply voltage is out of range.
     Supply,
-    /// The sensor gives no number.
+    /// The sensor gives no reading, or the last one is too old.
     SensorMissing,
-    /// The sensor's number is out of its range.
+    /// The reading is out of range.
     SensorRange,
-    /// It jumped.
+    /// The reading changed faster than the path can.
     SensorJump,
-    /// It is stuck.
+    /// The reading has not changed for too long.
     SensorStuck,
-    /// The tick before was late or did not finish.
+    /// The last tick was late or did not finish.
     Deadline,
-    /// The watchdog had to restart the controller.
+    /// The watchdog restarted the controller.
     Watchdog,
-    /// Memory has lost a bit: of state, parameters, limits, scale, rows, drives or plans.
+    /// A checksum failed: of state, parameters, limits, scale, rows, drives or plans.
     Checksum,
     /// The output stage did not answer.
     Output,
-    /// A stimulus was asked for that the stimulator cannot do, or that is not a number.
+    /// The stimulator cannot do the requested stimulus, or it is not finite.
     Request,
-    /// Somebody has stopped it, which is not a fault, and takes the same two steps to go on.
+    /// Stopped by the host: no fault, but arming takes the same two steps.
     Stopped,
-    /// The last row whose stimulus is put out is too old: rows stopped coming, or their traces were not taken.
+    /// The row in force is too old: rows stopped coming, or their traces were not taken.
     StaleRow,
-    /// The drive whose stimulus is put out is too old: the host did not repeat it.
+    /// The drive in force is too old: the host did not repeat it.
     StaleDrive,
 }
 
 impl Fault {
-    /// May have been there for a tick only, and is not to be missed for that: arming looks at the last tick.
+    /// Transient fault: latched while acknowledged, because arming checks only the latest tick.
     pub(crate) fn is_of_a_moment(self) -> bool {
         matches!(self, Self::Checksum | Self::Deadline | Self::Output)
     }

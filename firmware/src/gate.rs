@@ -1,27 +1,26 @@
-//! What pulse timer, tick and link tell each other without waiting for each other.
+//! Flags between pulse timer, tick and link, without waiting.
 
 use crate::shared::Flag;
 
-/// Flags between levels of one core, of which one interrupts the other: each is set by one side, and cleared by
-/// the other or by the same.
+/// Flags between interrupt levels of one core. Each is set by one side and cleared by one side.
 #[derive(Debug, Default)]
 pub struct Gate {
-    /// The tick allows current.
+    /// The tick permits current.
     open: Flag,
-    /// The tick has allowed it again.
+    /// The tick has renewed the permission.
     renewed: Flag,
-    /// The output stage did not answer when it was last spoken to.
+    /// The output stage did not answer the last command.
     output_failed: Flag,
-    /// The pulse timer did not hear of the tick for too long, or its own interrupt came too late.
+    /// A permission expired, or the pulse timer's interrupt was late.
     late: Flag,
-    /// Memory has changed a plan on its way to the pulse timer, or there.
+    /// The checksum of a plan failed.
     plan_lost: Flag,
-    /// The link has acted upon a frame of the host's.
+    /// A frame of the host was acted upon.
     heard: Flag,
 }
 
 impl Gate {
-    /// Shut.
+    /// Closed: no current.
     pub const fn new() -> Self {
         let no = Flag::lowered;
         Self {
@@ -46,7 +45,7 @@ impl Gate {
         self.renewed.set(true);
     }
 
-    /// Whether the tick has allowed it since this was asked last. Only for the pulse timer, which the tick cannot
+    /// Whether the permission was renewed since the last call. Only for the pulse timer, which the tick cannot
     /// interrupt.
     pub(crate) fn take_renewed(&self) -> bool {
         let renewed = self.renewed.is_raised();
@@ -66,7 +65,7 @@ impl Gate {
         self.heard.set(true);
     }
 
-    /// Whether the host was heard of since this was asked last. Only for the tick, which the link cannot interrupt.
+    /// Whether the host was heard since the last call. Only for the tick, which the link cannot interrupt.
     pub(crate) fn take_heard(&self) -> bool {
         let heard = self.heard.is_raised();
         self.heard.set(false);

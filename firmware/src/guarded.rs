@@ -1,11 +1,11 @@
-//! A value with its checksum, so that a bit that memory has lost is a fault before it is a current.
+//! A value with its checksum: a flipped bit becomes a fault before it becomes a current.
 //!
-//! Made where a value is known to be right (a frame's checksum was good, a limit was validated), and looked at
-//! wherever it is used, however many queues are between.
+//! It is made where a value is known to be correct (after the frame's CRC, after validation) and checked at every
+//! use.
 
 use vm_nostd::Checksum;
 
-/// What can be summed, every bit that matters.
+/// Values with a checksum over all bits that matter.
 pub trait Sum {
     /// Adds all of its bits.
     fn sum(&self, checksum: &mut Checksum);
@@ -24,7 +24,7 @@ impl<T: Sum, const N: usize> Sum for [T; N] {
     }
 }
 
-/// A value, and its checksum when it was put here.
+/// A value with the checksum of its construction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Guarded<T> {
     value: T,
@@ -32,25 +32,25 @@ pub struct Guarded<T> {
 }
 
 impl<T: Sum> Guarded<T> {
-    /// Guards a value from now on.
+    /// Guards a value.
     pub fn new(value: T) -> Self {
         let sum = sum_of(&value);
         Self { value, sum }
     }
 
-    /// What memory does to a value.
+    /// A flipped bit, for tests.
     #[cfg(test)]
     pub(crate) fn corrupt(&mut self, change: impl FnOnce(&mut T)) {
         change(&mut self.value);
     }
 
-    /// The value; none if memory has lost a bit of it.
+    /// The value; none if its checksum fails.
     pub fn get(&self) -> Option<&T> {
         (sum_of(&self.value) == self.sum).then_some(&self.value)
     }
 }
 
-/// Never that of memory that was erased: not 0 for a value of zeros.
+/// Initial value: a value of zeros has no checksum of 0.
 fn sum_of(value: &impl Sum) -> u32 {
     let mut checksum = Checksum::EMPTY;
     checksum.add(1);

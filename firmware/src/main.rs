@@ -1,11 +1,11 @@
-//! The stimulator: three levels, each of which interrupts the ones below and waits for none.
+//! The stimulator: three interrupt levels, of which none waits for another, and idle.
 //!
 //! | priority | task | by |
 //! |---:|---|---|
 //! | 3 | pulses | the pulse timer |
 //! | 2 | muscles and supervision | the tick |
 //! | 1 | bytes from the host | the serial port |
-//! | 0 | link, storage, log | what time is left |
+//! | 0 | link, storage, log | idle |
 #![no_std]
 #![no_main]
 
@@ -27,11 +27,11 @@ mod app {
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
 
-    /// What this board may put out; refused here and not on the patient if it contradicts itself or the board.
+    /// The board's limits, validated at compile time.
     const LIMITS: Limits = Limits::SURFACE.within_scale(&SCALE);
     const _: () = assert!(LIMITS.validate(TICK_US, &SCALE).is_ok(), "limits that are none");
 
-    /// Bytes that can wait for the link: several of the longest frames.
+    /// Bytes that can wait for the link: several longest frames.
     const WAITING: usize = 4096;
 
     #[shared]
@@ -51,7 +51,7 @@ mod app {
         server: Server<'static, Memory, Numbers>,
     }
 
-    /// Outputs are neutral before anything else is done. What is large is built where it stays, and not on the stack.
+    /// Puts the outputs in neutral first. Large values are built in place, not on the stack.
     #[init(local = [
         gate: Gate = Gate::new(),
         plans: PlanQueue = Queue::new(),
@@ -141,7 +141,7 @@ mod app {
         }
     }
 
-    /// A byte has come. One takes longer than a tick, which runs above this.
+    /// Receives a byte. A byte takes longer than the tick that may delay this.
     #[task(binds = USART1, priority = 1, local = [from_host, received])]
     fn receive(context: receive::Context) {
         let receive::LocalResources { from_host, received, .. } = context.local;
@@ -151,7 +151,7 @@ mod app {
         }
     }
 
-    /// The link, and the log: only while nothing is armed, for a log interrupts the pulse timer's interrupt.
+    /// Link and log. It logs only while disarmed, because logging masks the pulse timer's interrupt.
     #[idle(local = [arrived, to_host, server])]
     fn idle(context: idle::Context) -> ! {
         let idle::LocalResources { arrived, to_host, server, .. } = context.local;
@@ -183,7 +183,7 @@ mod app {
     }
 }
 
-/// Starts again: everything is off at boot.
+/// Resets the chip: everything is off at boot.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     board::reset()

@@ -1,47 +1,46 @@
-//! The output stage over `embedded-hal`: a current source set through a converter on SPI, a bridge that turns
-//! its current round, and a switch per channel.
+//! Output stage over `embedded-hal`: a current source set by a converter on SPI, a bridge that reverses the
+//! current, and a switch per channel.
 
 use crate::schedule::Step;
 use crate::waveform::{Direction, Phase};
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
-/// Pins of the bridge. With both low, the electrodes are connected to each other, and what charge is left on
-/// them flows off.
+/// Pins of the bridge. With both low, the electrodes are shorted to each other, and residual charge decays.
 #[derive(Debug)]
 pub struct Bridge<P> {
-    /// High while current flows out of the tissue at the working electrode.
+    /// High for the cathodic phase: current out of the tissue at the working electrode.
     pub cathodic: P,
-    /// High while it flows in.
+    /// High for the anodic phase.
     pub anodic: P,
 }
 
-/// Something on the way to the electrodes did not answer.
+/// A part of the output stage failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputError {
     /// The converter.
     Converter,
     /// A pin.
     Pin,
-    /// A channel that there is not.
+    /// No such channel.
     Channel,
 }
 
-/// The output stage of `CHANNELS` channels, of which one at a time is connected.
+/// Output stage of `CHANNELS` channels, of which at most one is connected.
 #[derive(Debug)]
 pub struct OutputStage<D, P, const CHANNELS: usize> {
     converter: D,
     bridge: Bridge<P>,
     channels: [P; CHANNELS],
-    /// The channel that is connected, and where its current flows.
+    /// Connected channel and direction of its current.
     connected: Option<(usize, Direction)>,
 }
 
-/// First byte to a converter of the MCP4921's kind: unbuffered, gain 1, active; then four bits of the count.
+/// First byte to an MCP4921: unbuffered, gain 1, active, and four bits of the count.
 const WRITE: u8 = 0x30;
 
 impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNELS> {
-    /// Takes over converter and pins, and puts them in neutral before anything else.
+    /// Takes over converter and pins and puts them in neutral first.
     pub fn new(
         converter: D,
         bridge: Bridge<P>,
@@ -52,7 +51,7 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         Ok(stage)
     }
 
-    /// Puts out a step; where it fails, what can be put in neutral is.
+    /// Outputs a step; on an error puts everything it can in neutral.
     pub fn apply(&mut self, step: &Step) -> Result<(), OutputError> {
         let done = match step.output {
             Some((channel, phase)) => self.drive(channel, phase),
@@ -65,7 +64,7 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         done
     }
 
-    /// No current, no direction, no channel: every pin is tried, whatever the others say.
+    /// No current, no direction, no channel; tries every pin even after an error.
     pub fn neutral(&mut self) -> Result<(), OutputError> {
         self.connected = None;
         let converter = self.convert(0);
@@ -84,8 +83,8 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         self.connected.is_some()
     }
 
-    /// No current, and both sides of the bridge low: the channel that was connected stays so, and what charge is
-    /// on its electrodes flows off. [`neutral`](Self::neutral) is to follow.
+    /// No current, both sides of the bridge low, and the channel stays connected: residual charge of its
+    /// electrodes decays. [`neutral`](Self::neutral) must follow.
     pub fn discharge(&mut self) -> Result<(), OutputError> {
         self.connected = None;
         let converter = self.convert(0);
@@ -98,7 +97,7 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         converter.and(pins)
     }
 
-    /// A phase with current is never one that switches: its first word is its only one.
+    /// Phases with current never switch: their first word is their only one.
     fn drive(&mut self, channel: usize, phase: Phase) -> Result<(), OutputError> {
         if self.connected == Some((channel, phase.direction)) {
             return self.convert(phase.counts);
@@ -107,7 +106,7 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         if phase.counts > 0 { self.convert(phase.counts) } else { Ok(()) }
     }
 
-    /// Connects a channel in a direction, without current while anything switches.
+    /// Connects a channel in a direction, without current during switching.
     fn connect(&mut self, channel: usize, direction: Direction) -> Result<(), OutputError> {
         if channel >= CHANNELS {
             return Err(OutputError::Channel);

@@ -1,8 +1,8 @@
-//! Numbers that nobody can foretell, from a part's noise generator: checked as its manual asks.
+//! Random numbers from a part's noise generator, checked as its manual requires.
 
-/// Where the numbers of sessions come from.
+/// Source of session numbers.
 pub trait Randomness {
-    /// 32 bits; none if the generator gives none. `polls` is how often the link was looked after since boot.
+    /// 32 bits; none if the generator failed. `polls` counts the polls of the link since boot.
     fn number(&mut self, polls: u32) -> Option<u32>;
 }
 
@@ -12,8 +12,8 @@ impl<R: Randomness + ?Sized> Randomness for &mut R {
     }
 }
 
-/// What there is where there is no generator, as in an emulator: the polls since boot. Whoever repeats a boot to
-/// the poll repeats the number; only what the host adds to it is then new.
+/// Replacement without a generator, as in QEMU: the polls since boot. Repeating a boot to the poll repeats the
+/// number; only the host's nonce is then new.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PollCount;
 
@@ -29,9 +29,9 @@ impl Randomness for PollCount {
 pub struct NoiseStatus {
     /// A number can be read.
     pub is_ready: bool,
-    /// Its clock is too slow or has stopped, now or since the flag was cleared.
+    /// Clock error (too slow or stopped), now or since the flag was cleared.
     pub clock_error: bool,
-    /// Its noise is none: a bit that stays, or alternates; now or since the flag was cleared.
+    /// Noise error (constant or alternating bits), now or since the flag was cleared.
     pub seed_error: bool,
 }
 
@@ -41,17 +41,17 @@ pub trait NoiseGenerator {
     fn status(&mut self) -> NoiseStatus;
     /// The number that is ready.
     fn read(&mut self) -> u32;
-    /// Clears its error flags, switches it off and on again.
+    /// Clears the error flags and restarts it.
     fn restart(&mut self);
 }
 
-/// A number takes 40 of the generator's clocks, less than a µs; a poll takes more than one of the core's.
+/// Most polls for a number, which takes 40 clocks of the generator, less than a µs.
 const MOST_POLLS: u32 = 10_000;
-/// A generator that errs as often for one number is broken.
+/// Restarts for one number before the generator counts as broken.
 const MOST_RESTARTS: u32 = 8;
 
-/// Numbers of a noise generator. As RM0090 asks (24.3.1), the first after a start is only compared with, no number
-/// follows itself, and after an error of its clock or of its noise it starts again.
+/// Numbers of a noise generator, per RM0090 24.3.1: the first number after a start is only compared with, no
+/// number may repeat the last, and a clock or noise error restarts it.
 #[derive(Clone, Debug)]
 pub struct Noise<G> {
     generator: G,
@@ -59,7 +59,7 @@ pub struct Noise<G> {
 }
 
 impl<G: NoiseGenerator> Noise<G> {
-    /// Takes over a generator that was switched on.
+    /// Takes over a generator that is switched on.
     pub const fn new(generator: G) -> Self {
         Self { generator, before: None }
     }

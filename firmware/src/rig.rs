@@ -1,4 +1,4 @@
-//! Two muscles and the tick that steps them.
+//! Test rig: two muscles stepped by one tick.
 
 use vm_nostd::{
     ContinuousMuscle, FesMuscle, FiberParams, Input, IntramuscularFes, MuscleParams,
@@ -10,29 +10,29 @@ const TYPES: usize = 2;
 /// Words of a muscle's output: force, length, velocity, status.
 const OUTPUT_WORDS: usize = 4;
 
-/// An arithmetic of 32-bit words, as firmware runs in.
+/// An arithmetic of 32-bit words.
 pub trait Arithmetic: Scalar<Bits = u32> {}
 impl<S: Scalar<Bits = u32>> Arithmetic for S {}
 
-/// Words that a tick of two muscles leaves.
+/// Recorded words per tick.
 pub const fn frame_words<S: Arithmetic>() -> usize {
     2 * (State::<S, NaturalContinuous, TYPES>::WORDS + OUTPUT_WORDS)
 }
 
-/// Where a tick's inputs come from.
+/// Source of inputs.
 pub trait Inputs<S: Scalar> {
     /// Inputs of the continuous and of the FES muscle for a tick, counted from 0.
     fn inputs(&mut self, tick: u32) -> [Input<S>; 2];
 }
 
-/// Where a tick's results go.
+/// Sink of results.
 pub trait Record {
-    /// Takes all bits that a tick leaves, [`frame_words`] of them: state and output of the
-    /// continuous muscle, then of the FES one. Must not block.
+    /// Takes the [`frame_words`] words of a tick: state and output of the continuous muscle, then of the
+    /// FES muscle. Must not block.
     fn record(&mut self, words: impl Iterator<Item = u32>);
 }
 
-/// Two muscles of the paper's kind, one recruited naturally and one by intramuscular FES.
+/// Two of the paper's muscles, one with natural recruitment and one under intramuscular FES.
 #[derive(Clone, Debug)]
 pub struct Rig<S: Arithmetic> {
     continuous: ContinuousMuscle<S, TYPES>,
@@ -57,7 +57,7 @@ pub const MUSCLE: MuscleParams<TYPES> = MuscleParams {
 };
 
 impl<S: Arithmetic> Rig<S> {
-    /// Both muscles at rest on a path of `path_length` m, to be ticked at 1 kHz.
+    /// Both muscles at rest on a path of `path_length` m, for ticks of 1 ms.
     pub fn at_rest(path_length: f32) -> Result<Self, ParameterError> {
         let continuous = ContinuousMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
         let fes = FesMuscle::build(&MUSCLE, TimeStep::MILLISECOND)?;
@@ -76,9 +76,9 @@ impl<S: Arithmetic> Rig<S> {
         self.tick
     }
 
-    /// One tick: reads inputs, steps both muscles, records what they were left in.
+    /// One tick: reads inputs, steps both muscles, records state and output.
     ///
-    /// Bounded and free of waiting; to be called every millisecond.
+    /// Bounded, without waiting. Call it every millisecond.
     pub fn tick(&mut self, inputs: &mut impl Inputs<S>, record: &mut impl Record) {
         let [continuous, fes] = inputs.inputs(self.tick);
         let continuous = self.continuous.step(&mut self.continuous_state, continuous);

@@ -1,19 +1,19 @@
 //! What one level shares with another that interrupts it: flags and queues, each access of which goes through here.
 //!
-//! With the feature `explore`, a test is asked before each access whether a higher level is to run there. Between two
-//! accesses it cannot matter. Without the feature, nothing of this is left.
+//! With the feature `explore`, a test decides before each access whether a higher level runs there; between
+//! accesses it makes no difference. Without the feature this compiles to nothing.
 
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use heapless::spsc::{Consumer, Producer};
 
-/// Here a higher level may interrupt.
+/// A higher level may interrupt here.
 #[inline(always)]
 fn preemption_point() {
     #[cfg(feature = "explore")]
     explore::ask();
 }
 
-/// A flag that several levels look at.
+/// A flag shared by levels.
 #[derive(Debug)]
 pub(crate) struct Flag(AtomicBool);
 
@@ -39,7 +39,7 @@ impl Default for Flag {
     }
 }
 
-/// The giving end of a queue.
+/// Producer of a queue.
 pub(crate) struct Giver<'q, T>(pub(crate) Producer<'q, T>);
 
 impl<T> Giver<'_, T> {
@@ -48,20 +48,20 @@ impl<T> Giver<'_, T> {
         self.0.enqueue(item)
     }
 
-    /// Whether there is room.
+    /// Whether it has room.
     pub(crate) fn ready(&self) -> bool {
         preemption_point();
         self.0.ready()
     }
 
-    /// How much room there is.
+    /// Free places.
     pub(crate) fn room(&self) -> usize {
         preemption_point();
         self.0.capacity() - self.0.len()
     }
 }
 
-/// The taking end of a queue.
+/// Consumer of a queue.
 pub(crate) struct Taker<'q, T>(pub(crate) Consumer<'q, T>);
 
 impl<T> Taker<'_, T> {
@@ -70,14 +70,14 @@ impl<T> Taker<'_, T> {
         self.0.dequeue()
     }
 
-    /// Whether something is there.
+    /// Whether it has an item.
     pub(crate) fn ready(&self) -> bool {
         preemption_point();
         self.0.ready()
     }
 }
 
-/// For tests that try every order of levels.
+/// Hooks for tests that try every order of levels.
 #[cfg(feature = "explore")]
 pub mod explore {
     use core::cell::Cell;
@@ -86,7 +86,7 @@ pub mod explore {
         static HOOK: Cell<Option<fn()>> = const { Cell::new(None) };
     }
 
-    /// What is called before each access of this thread from now on.
+    /// Sets the function called before each access of this thread.
     pub fn before_each_access(hook: Option<fn()>) {
         HOOK.set(hook);
     }

@@ -1,23 +1,23 @@
-//! An independent watchdog, as RM0090 (21.3) wants it: its registers are changed only while no change is under way,
-//! and a change counts when the part says that it has arrived.
+//! Independent watchdog, per RM0090 21.3: registers are written only while no update is pending, and an update
+//! counts when the part reports it.
 
-/// Its oscillator, Hz, at the slowest and at the fastest (DS8626, LSI).
+/// Range of its oscillator, Hz (DS8626, LSI).
 const SLOWEST_HZ: u32 = 17_000;
 const FASTEST_HZ: u32 = 47_000;
-/// Counts that it has at most.
+/// Greatest count.
 const MOST_COUNTS: u32 = 4096;
 
-/// How long a watchdog waits to be fed.
+/// Timeout of a watchdog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
     /// Prescaler: the oscillator is divided by 4 * 2^this, 0 to 6.
     pub prescaler: u8,
-    /// Counts, less one, 0 to 4095.
+    /// Reload: counts minus one, 0 to 4095.
     pub reload: u16,
 }
 
 impl Patience {
-    /// The shortest that lasts so many ms though the oscillator be at its fastest; 22,000 ms at most.
+    /// Shortest timeout of at least this many ms at the fastest oscillator; 22,000 ms at most.
     pub const fn at_least(ms: u32) -> Self {
         let mut prescaler = 0;
         loop {
@@ -34,12 +34,12 @@ impl Patience {
         (self.reload as u32 + 1) * (4 << self.prescaler)
     }
 
-    /// With the oscillator at its fastest, ms.
+    /// At the fastest oscillator, ms.
     pub const fn least_ms(self) -> u32 {
         self.clocks() / (FASTEST_HZ / 1000)
     }
 
-    /// With the oscillator at its slowest, ms.
+    /// At the slowest oscillator, ms.
     pub const fn most_ms(self) -> u32 {
         self.clocks().div_ceil(SLOWEST_HZ / 1000)
     }
@@ -50,11 +50,11 @@ impl Patience {
     }
 }
 
-/// While current may flow: three of the longest ticks.
+/// While current may flow: three of the longest tick times.
 pub const ARMED: Patience = Patience::at_least(6);
-/// While none may: longer than flash can hold up the core, see [`MOST_STORE_MS`](crate::flash::MOST_STORE_MS).
+/// While disarmed: longer than flash stalls the core, see [`MOST_STORE_MS`](crate::flash::MOST_STORE_MS).
 pub const DISARMED: Patience = Patience::at_least(crate::flash::MOST_STORE_MS + 100);
-/// Longest change from one to the other, ms.
+/// Longest update from one to the other, ms.
 pub const MOST_CHANGE_MS: u32 = DISARMED.change_ms();
 
 const _: () = assert!(ARMED.most_ms() < 20, "armed, too patient");
@@ -63,35 +63,35 @@ const _: () = assert!(DISARMED.change_ms() >= ARMED.change_ms());
 
 /// Registers of a watchdog.
 pub trait WatchdogRegisters {
-    /// It counts from now on, and cannot be stopped; its oscillator runs.
+    /// Starts it and its oscillator; it cannot be stopped.
     fn start(&mut self);
-    /// A change of its prescaler or of its reload has not arrived yet.
+    /// An update of prescaler or reload is pending.
     fn is_changing(&self) -> bool;
-    /// Changes both.
+    /// Writes both.
     fn change(&mut self, patience: Patience);
-    /// Counts begin again, from the reload that has arrived.
+    /// Restarts the count from the current reload.
     fn feed(&mut self);
 }
 
-/// Its registers do not take a change: its oscillator has stopped, and it watches nothing.
+/// A register update does not complete: its oscillator has stopped, and it does not guard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stuck;
 
-/// Restarts the chip when ticks stop coming.
+/// Resets the chip when ticks stop.
 #[derive(Clone, Debug)]
 pub struct Watchdog<R> {
     registers: R,
-    /// The last change.
+    /// Last written timeout.
     written: Patience,
-    /// The last change has arrived, and was fed with.
+    /// Whether it is in force.
     in_force: bool,
-    /// Ticks that a change has been under way for, and the most that are taken.
+    /// Ticks since the update began, and their limit.
     changing_ticks: u32,
     most_ticks: u32,
 }
 
 impl<R: WatchdogRegisters> Watchdog<R> {
-    /// Starts it, patient: ticks of so many µs will feed it. Waits for its registers, for so many polls at most.
+    /// Starts it with the disarmed timeout, for ticks of `tick_us` µs. Polls its registers a limited number of times.
     pub fn start(mut registers: R, tick_us: u32, most_polls: u32) -> Result<Self, Stuck> {
         // Without its oscillator, which this switches on, no change arrives.
         registers.start();
@@ -106,7 +106,7 @@ impl<R: WatchdogRegisters> Watchdog<R> {
         Ok(Self { registers, written: DISARMED, in_force: true, changing_ticks: 0, most_ticks })
     }
 
-    /// A tick has ended in time. Does not wait: a change is begun by one tick and seen to have arrived by a later.
+    /// A tick has ended in time. Does not wait: one tick begins an update, a later one sees it complete.
     pub fn feed(&mut self, armed: bool) -> Result<(), Stuck> {
         let wanted = if armed { ARMED } else { DISARMED };
         if self.registers.is_changing() {
@@ -124,7 +124,7 @@ impl<R: WatchdogRegisters> Watchdog<R> {
         if self.changing_ticks > self.most_ticks { Err(Stuck) } else { Ok(()) }
     }
 
-    /// Whether the core may be held up for as long as flash does: [`DISARMED`] is in force.
+    /// Whether flash may stall the core: [`DISARMED`] is in force.
     pub fn is_patient(&self) -> bool {
         self.in_force && self.written == DISARMED
     }

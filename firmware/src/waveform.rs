@@ -1,51 +1,51 @@
-//! A biphasic pulse whose charge is nothing, to the last count.
+//! A charge-balanced biphasic pulse: the net charge is exactly 0 counts times µs.
 //!
-//! The phase that stimulates is cathodic, `counts` for `width`; after the gap, the other takes the charge back,
-//! `recovery` times weaker and as many times longer. Counts are a whole multiple of `recovery`, so that the
-//! weaker phase has a whole number of them, and both phases have the same counts times µs.
+//! The stimulating phase is cathodic, `counts` for `width`. After the interphase gap, the recharge phase is
+//! `recovery` times weaker and longer. Counts are a multiple of `recovery`, so that both phases have exactly
+//! the same counts times µs.
 //!
-//! Switches take time, and so does a converter: before, between and after the two are phases without current in
-//! which channel and direction are switched. Each phase with current then begins and ends with one word to the
-//! converter, as the first thing a step does, and lasts as long as it should, however long words and switches take.
+//! Channel and direction are switched in phases without current before, between and after the two. Each phase
+//! with current begins and ends with one word to the converter, the first action of a step, so that its
+//! duration does not depend on the time of words and switches.
 
 use crate::stimulus::{SETTLE_US, Scale, Stimulus, StimulusError};
 
-/// Where a current flows.
+/// Direction of a current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Out of the tissue at the working electrode: it stimulates.
+    /// Cathodic: out of the tissue at the working electrode; stimulates.
     Cathodic,
-    /// Into the tissue: it takes the charge back.
+    /// Anodic: into the tissue; recharges.
     Anodic,
 }
 
-/// A current that is held for a while.
+/// A constant current for a duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase {
     /// Of the current source; 0 in the gap.
     pub counts: u16,
-    /// Where it flows.
+    /// Direction.
     pub direction: Direction,
     /// µs.
     pub duration_us: u16,
 }
 
-/// A pulse: settling, stimulation, gap, turning of the bridge (the gap's last part), recovery, settling.
+/// A pulse: settling, stimulation, interphase gap (its last part reverses the bridge), recharge, settling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pulse {
-    /// In their order.
+    /// Phases in order.
     pub phases: [Phase; 6],
 }
 
 impl Pulse {
-    /// The pulse of a stimulus: at most its amplitude, and less by under `recovery` counts.
+    /// The pulse of a stimulus: its amplitude, rounded down to a multiple of `recovery` counts.
     pub fn new(stimulus: &Stimulus, scale: &Scale) -> Result<Self, StimulusError> {
         stimulus.validate(scale)?;
         let Stimulus { amplitude_ua, width_us, gap_us, recovery, .. } = *stimulus;
         Ok(Self::of(scale.counts_of(amplitude_ua), width_us, gap_us, recovery))
     }
 
-    /// The pulse of at most so many counts, of a shape that was validated.
+    /// A pulse of at most this many counts, of a validated shape.
     pub(crate) fn of(counts: u16, width_us: u16, gap_us: u16, recovery: u8) -> Self {
         let recovery = u16::from(recovery.max(1));
         let weak = counts / recovery;
@@ -63,13 +63,13 @@ impl Pulse {
         }
     }
 
-    /// Counts of the phase that stimulates.
+    /// Counts of the stimulating phase.
     pub(crate) fn counts(&self) -> u16 {
         let [_, stimulating, ..] = self.phases;
         stimulating.counts
     }
 
-    /// Net charge, counts times µs, anodic counted up: 0.
+    /// Net charge, counts times µs, anodic positive: 0.
     pub fn net_charge(&self) -> i64 {
         self.phases
             .iter()

@@ -28,10 +28,10 @@ pub struct ForceVelocityParams {
     pub lengthening_velocity: f64,
 }
 
-/// How far cV0 + cV1 L must stay above -1, where FV gets a pole inside |Vmax|.
+/// Least distance of cV0 + cV1 L from -1, below which FV has a pole within |Vmax|.
 const POLE_MARGIN: f64 = 0.02;
 
-/// What follows from the coefficients and is refused by its own name.
+/// Names of derived quantities that are refused.
 const SHORTENING: &str = "force_velocity.shortening: cV0 + cV1 L";
 const LENGTHENING: &str = "force_velocity.lengthening: aV0 + aV1 L + aV2 L²";
 
@@ -48,15 +48,15 @@ impl ForceVelocityParams {
         within("force_velocity.lengthening_velocity", self.lengthening_velocity, 0.01, 10.0)
     }
 
-    /// The shortest fascicle length, in L_ce0 and not below `least`, from which the shortening
-    /// branch has no pole and rises with V.
+    /// Shortest fascicle length (L_ce0, at least `least`) above which the shortening branch has no pole and
+    /// rises with V.
     pub(crate) fn shortest_length(&self, least: f64) -> f64 {
         let [c0, c1] = self.shortening;
         if c1 > 0.0 { ((POLE_MARGIN - 1.0 - c0) / c1).max(least) } else { least }
     }
 
-    /// Refuses coefficients that the arithmetic cannot hold between two fascicle lengths: those of
-    /// both branches, (1 + n V)/(1 + d V), and what they are made from.
+    /// Refuses coefficients that the arithmetic cannot represent in a range of fascicle lengths: those of
+    /// both branches, (1 + n V)/(1 + d V), and their terms.
     pub(crate) fn validate_magnitudes(
         &self,
         least: f64,
@@ -74,8 +74,8 @@ impl ForceVelocityParams {
         for coefficient in [c0 / v_max, c1 * most / v_max] {
             within("force_velocity.shortening: relative to V_max", coefficient)?;
         }
-        // Evaluated from the last coefficient on: what is monotone is largest at an end, and the
-        // quadratic between them is at most the sum of parts that are checked.
+        // Horner's scheme: monotonic terms are largest at an end of the range, and the quadratic is at
+        // most the sum of its checked terms.
         for length in [least, most] {
             for part in [a0, (a1 + a2 * length) * length, a1, a2 * length] {
                 within("force_velocity.lengthening: relative to b_V", part / b)?;
@@ -84,8 +84,8 @@ impl ForceVelocityParams {
         Ok(())
     }
 
-    /// Refuses coefficients with which force would not rise with velocity somewhere between two
-    /// fascicle lengths: the sign of V could not be told from the forces there.
+    /// Refuses coefficients with which force does not rise with velocity somewhere in a range of
+    /// fascicle lengths: the net force at V = 0 would not give the sign of V.
     pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
@@ -127,10 +127,10 @@ impl<S: Scalar> ForceVelocity<S> {
         }
     }
 
-    /// The curve during a tick: at a fascicle length in L_ce0, taken at its middle, that changes by
-    /// `travel` (L_ce0) across it.
+    /// The curve during a tick with the mid-tick fascicle length (L_ce0), which changes by `travel` (L_ce0)
+    /// across the tick.
     ///
-    /// Lengthening, FV depends on length as much as FL does: held over the tick, it would make
+    /// The lengthening branch depends on length as much as FL does: constant over the tick, it would cause
     /// nearly all of the error at 2 ms.
     #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
@@ -157,9 +157,9 @@ pub(crate) struct VelocityCurve<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// FV, its slope and half its curvature by V, `time` ticks after the middle of the tick of a `curve`,
-    /// on the branch named by `lengthening`, at a velocity of that side. Faster than V_max, FV is 0: the
-    /// paper's own expression would push.
+    /// FV, its slope and half its curvature with respect to V, `time` ticks after mid-tick of a `curve`, on the
+    /// branch selected by `lengthening`, at a velocity of that branch. Beyond V_max FV is 0, where the paper's
+    /// expression is negative.
     #[inline(always)]
     pub(crate) fn on(
         &self,

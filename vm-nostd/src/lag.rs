@@ -21,12 +21,12 @@ impl<S: Scalar> Lag<S> {
         Self { half: S::share(one_minus_exp(0.5 * x)), whole: S::share(one_minus_exp(x)) }
     }
 
-    /// The value at the middle of the tick.
+    /// Value at mid-tick.
     pub(crate) fn at_middle(&self, start: S::Slow, target: S) -> S {
         S::of(S::moved(start, target - S::of(start), self.half))
     }
 
-    /// The value at the end of the tick.
+    /// Value at the end of the tick.
     pub(crate) fn at_end(&self, start: S::Slow, target: S) -> S::Slow {
         S::moved(start, target - S::of(start), self.whole)
     }

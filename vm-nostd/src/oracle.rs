@@ -1,5 +1,5 @@
-//! Tests of every element against the paper's own formula, in `f64`, and of every slope against
-//! a difference quotient.
+//! Tests of every element against the paper's formula in `f64`, and of every slope against a difference
+//! quotient.
 
 use crate::ContinuousMuscle;
 use crate::activation::ActivationFrequency;
@@ -30,7 +30,7 @@ fn spaced(least: f64, most: f64, count: u32) -> Vec<f64> {
     (0..=count).map(|i| least + (most - least) * f64::from(i) / f64::from(count)).collect()
 }
 
-/// The nearest number that `f32` and fixed point both hold exactly, if it is below 16.
+/// Nearest number that `f32` and fixed point both represent exactly, below 16.
 fn shared(value: f64) -> f64 {
     (value * 1_048_576.0).round() / 1_048_576.0
 }
@@ -65,14 +65,14 @@ struct Worst {
 impl Worst {
     fn see(&mut self, f32: f32, fixed: Fixed, f64: f64, expected: f64) {
         let scale = expected.abs().max(1.0);
-        // `f64::max` passes over a not-a-number: it must not pass here.
+        // `f64::max` ignores NaN, which must fail here.
         assert!(f32.is_finite() && f64.is_finite(), "{f32} {f64} for {expected}");
         self.f32 = self.f32.max((f64::from(f32) - expected).abs() / scale);
         self.fixed = self.fixed.max((Scalar::to_f64(fixed) - expected).abs() / scale);
         self.f64 = self.f64.max((f64 - expected).abs() / scale);
     }
 
-    /// Holds what was seen to the entry of [`BOUNDS`].
+    /// Compares the largest errors with the entry of [`BOUNDS`].
     fn assert_bound(&self, relation: &str) {
         let (_, [f32, fixed, f64]) =
             BOUNDS.into_iter().find(|(name, _)| *name == relation).expect("a relation");
@@ -255,7 +255,7 @@ fn activation_by_frequency_is_the_papers() {
     value.assert_bound("Af");
 }
 
-/// Euler's method at steps so short that it can serve as an oracle.
+/// Euler's method at very short steps, as an oracle.
 fn excitation_by_small_steps(
     t: &FiberType,
     start: (f64, f64),
@@ -312,7 +312,7 @@ fn a_lag_reaches_its_target_and_its_middle_lies_on_the_way() {
     assert!((lag.at_middle(0.0, 1.0) - exact(0.5)).abs() < 1e-15);
     let slow = Lag::<f32>::new(0.2, TimeStep::MILLISECOND);
     let settled = (0..10_000).fold(0.0_f32, |y, _| slow.at_end(y, 1.0));
-    // In f32 a lag stalls where its step falls below half a last bit.
+    // In f32 a lag stalls when its step is below half an ULP.
     assert!((settled - 1.0).abs() < 2e-5, "{settled}");
 }
 
@@ -361,8 +361,8 @@ fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
         }
     }
     assert!(f32 <= sum(0), "f32: {f32:e} > {:e}", sum(0));
-    // A velocity that moves the tendon's extension by less than half a unit a tick moves nothing: 3e-5
-    // L_ce0/s, on which FV rises by more than its own bound.
+    // A velocity that moves the tendon's extension by less than half an ULP a tick moves nothing: 3e-5
+    // L_ce0/s, over which FV rises by more than its own bound.
     const UNRESOLVED: f64 = 3e-5;
     assert!(fixed <= sum(1) + UNRESOLVED, "fixed: {fixed:e} > {:e}", sum(1));
 }

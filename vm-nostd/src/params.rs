@@ -1,4 +1,4 @@
-//! What a muscle is made of, in SI units and `f64`, and the limits of what can be built.
+//! Parameters of a muscle, in SI units and `f64`, and their limits.
 
 use crate::activation::ActivationParams;
 use crate::contraction::largest_inertia;
@@ -37,7 +37,7 @@ pub struct FiberType {
     pub activation: ActivationParams,
     /// Rise and fall of excitation.
     pub excitation: ExcitationParams,
-    /// Time constant of effective length T_L, s, in the mode that has one; 5e-5 to 0.01.
+    /// Time constant of effective length T_L, s; 5e-5 to 0.01. Only `EffectiveLengthMuscle` uses it.
     #[doc(alias = "TL")]
     pub effective_length_time: f64,
     /// Sag, of fast types.
@@ -68,11 +68,11 @@ impl FiberType {
 pub struct FiberParams {
     /// Share of the physiological cross-sectional area; 0.001 to 1.
     pub fraction: f64,
-    /// The type.
+    /// The fibre type.
     pub fiber_type: FiberType,
 }
 
-/// Coefficients that all fibre types of a muscle share.
+/// Coefficients shared by all fibre types of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ElementParams {
@@ -101,7 +101,7 @@ impl ElementParams {
 /// A muscle of `N` fibre types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-// An array of any length has no implementation of serde's traits; those of the lengths in use do.
+// serde implements its traits for arrays of certain lengths only.
 #[cfg_attr(
     feature = "serde",
     serde(bound(
@@ -110,7 +110,7 @@ impl ElementParams {
     ))
 )]
 pub struct MuscleParams<const N: usize> {
-    /// Mass m, kg; 1e-5 to 30. It makes the cross section, and with it F0, and half of it moves.
+    /// Mass m, kg; 1e-5 to 30. It gives the cross section and F0; half of it is the moving mass.
     pub mass: f64,
     /// Optimal fascicle length L_ce0, m; 0.005 to 1.
     pub fascicle_length: f64,
@@ -123,37 +123,37 @@ pub struct MuscleParams<const N: usize> {
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
     pub recruitment_saturation: f64,
-    /// What the fibre types share.
+    /// Coefficients shared by the fibre types.
     pub elements: ElementParams,
     /// Fibre types in order of rank; their fractions add to 1.
     pub fibers: [FiberParams; N],
 }
 
-/// The fractions of all types add to 1 within this.
+/// Tolerance of the sum of fractions.
 const FRACTION_SUM_TOLERANCE: f64 = 1e-6;
-/// L_max that a muscle may have, L_ce0.
+/// Range of L_max, L_ce0.
 const MAXIMUM_FASCICLE_LENGTH: (f64, f64) = (0.8, 2.0);
-/// A path must have at least this range, L_ce0.
+/// Least range of the path domain, L_ce0.
 const LEAST_PATH_RANGE: f64 = 0.1;
-/// Fascicle lengths outside of which no type is evaluated, L_ce0.
+/// Widest range of fascicle lengths in which types are evaluated, L_ce0.
 pub(crate) const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
-/// Fascicles that ring may be longer by this than those of a muscle at rest on the longest path, L_ce0.
+/// Margin for ringing of the longest fascicles, beyond those at rest on the longest path, L_ce0.
 const RINGING_ROOM: f64 = 0.25;
-/// Halvings that bring a length to the last bits of `f64`.
+/// Bisections that bring a length to the last bits of `f64`.
 const HALVINGS: usize = 60;
-/// Fields that are refused for what follows from them.
+/// Names of derived quantities that are refused.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
-/// Fields that fixed point refuses for what follows from them.
+/// Names of derived quantities that fixed point refuses.
 const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
 const PARALLEL: &str = "parallel.stiffness: force of the longest fascicles, F0";
 const PARALLEL_TOE: &str = "parallel.toe: longest fascicles beyond slack, toes";
 const TOE_FORCE: &str = "tendon.toe: stiffness times toe, F0";
-/// The force that a tendon must be able to carry, F0. The domain of paths ends where fascicles pull more.
+/// Force that a tendon must carry, F0. The path domain ends where the fascicles exceed it.
 const LEAST_FORCE: f64 = 10.0;
 const REACH: &str = "max_path_length: range of the path, L_ce0";
 const LONGEST_LENGTH: &str = "activation.length_dependence: longest length (L_ce0) with n_f >= 0.2";
-/// A type must be usable at least between these fascicle lengths, L_ce0.
+/// Fascicle lengths at which every type must be valid, L_ce0.
 const LONGEST_LOWER_EDGE: f64 = 0.9;
 const SHORTEST_UPPER_EDGE: f64 = 1.1;
 
@@ -163,15 +163,15 @@ impl<const N: usize> MuscleParams<N> {
         self.elements.specific_tension * self.mass / (self.elements.density * self.fascicle_length)
     }
 
-    /// Length L_max of the fascicles, in L_ce0, when the passive muscle is on its longest path.
+    /// Fascicle length L_max, in L_ce0, of the passive muscle on its longest path.
     #[doc(alias = "Lmax")]
     pub fn maximum_fascicle_length(&self) -> f64 {
         let tendon = self.elements.tendon.length_at(self.elements.parallel.force(1.0));
         (self.max_path_length - tendon * self.tendon_length) / self.fascicle_length
     }
 
-    /// Fascicle lengths, in L_ce0, between which the model's equations hold for every type:
-    /// the force-velocity relation has no pole and n_f is not near 0.
+    /// Validity range of fascicle lengths, in L_ce0: for every type FV has no pole and n_f is at
+    /// least 0.2.
     pub fn fascicle_domain(&self) -> (f64, f64) {
         let (least, most) = FASCICLE_DOMAIN;
         self.fibers.iter().fold((least, most), |(least, most), fiber| {
@@ -180,21 +180,20 @@ impl<const N: usize> MuscleParams<N> {
         })
     }
 
-    /// The velocity of unloaded shortening of the slowest type, L_ce0/s, negative: faster than
-    /// this the force-velocity relation of that type is 0.
+    /// V_max of the slowest type, L_ce0/s, negative: FV of that type is 0 beyond it.
     pub fn shortening_velocity(&self) -> f64 {
         let velocities = self.fibers.iter().map(|f| f.fiber_type.force_velocity.maximum_velocity);
         velocities.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Path lengths, in m, that are taken as they are; others are saturated and flagged.
+    /// Path lengths, in m, that are accepted; others are clipped and flagged.
     ///
-    /// On the shortest the tendon is slack with the fascicles at the shortest of
-    /// [`fascicle_domain`](Self::fascicle_domain), where FV would have a pole. On the longest the fascicles are at
-    /// its longest, where n_f is 0.2, and pull with F0 on top of their passive force: on a longer path no activation
-    /// keeps them inside. Where the passive force would be more than 9 F0 the longest path ends at that force, as far
-    /// as every arithmetic holds a tendon's; and it is at least `max_path_length`. In fixed point it may end earlier,
-    /// where lengths do: [`Muscle::path_length_range`](crate::Muscle::path_length_range).
+    /// On the shortest path the tendon is slack with the fascicles at the lower end of
+    /// [`fascicle_domain`](Self::fascicle_domain) (FV's pole). On the longest path the fascicles are at its upper
+    /// end (n_f = 0.2) and pull with F0 plus their passive force: on a longer path no activation keeps them
+    /// inside. The longest path is limited to a passive force of 9 F0, which every arithmetic can represent, and
+    /// is at least `max_path_length`. In fixed point it may be shorter:
+    /// [`Muscle::path_length_range`](crate::Muscle::path_length_range).
     pub fn path_domain(&self) -> (f64, f64) {
         let tendon = &self.elements.tendon;
         let shortest = self.fascicle_domain().0 * self.fascicle_length
@@ -209,21 +208,20 @@ impl<const N: usize> MuscleParams<N> {
         (shortest, Scalar::max(longest, self.max_path_length))
     }
 
-    /// The middle between the shortest path and `max_path_length`, m.
+    /// Midpoint between the shortest path and `max_path_length`, m.
     pub fn middle_path(&self) -> f64 {
         0.5 * (self.path_domain().0 + self.max_path_length)
     }
 
-    /// The path domain (m) in an arithmetic that holds paths up to `longest_path` (m) and lengths up to `largest`
-    /// (L_ce0).
+    /// Path domain (m) in an arithmetic with paths up to `longest_path` (m) and lengths up to `largest` (L_ce0).
     pub(crate) fn path_domain_within(&self, longest_path: f64, largest: f64) -> (f64, f64) {
         let (shortest, longest) = self.path_domain();
         let most = Scalar::min(longest_path, shortest + largest * self.fascicle_length);
         (shortest, Scalar::min(longest, most))
     }
 
-    /// The longest that fascicles may be on paths up to `longest` (m), in L_ce0: those of a muscle at rest, and what
-    /// ringing adds; but not so long that no tendon is left.
+    /// Longest fascicles on paths up to `longest` (m), in L_ce0: at rest plus the margin for ringing, but leaving
+    /// room for the tendon.
     pub(crate) fn longest_fascicles(&self, longest: f64) -> f64 {
         let parallel = &self.elements.parallel;
         let maximum = self.maximum_fascicle_length();
@@ -241,8 +239,7 @@ impl<const N: usize> MuscleParams<N> {
         Scalar::min(most + RINGING_ROOM, none_left)
     }
 
-    /// Whether a muscle can be built from these parameters; the error names the field, its
-    /// value and the limit it broke.
+    /// Validates the parameters; the error has field, value and limit.
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("mass", self.mass, 1e-5, 30.0)?;
         within("fascicle_length", self.fascicle_length, 5e-3, 1.0)?;
@@ -270,8 +267,8 @@ impl<const N: usize> MuscleParams<N> {
         within("max_path_length", self.max_path_length, least, most)
     }
 
-    /// Whether coefficients, and forces on the way, fit in the arithmetic: in fixed point a number
-    /// ends at 128, and sums of two coefficients have to fit.
+    /// Checks that coefficients and intermediate forces are representable: fixed point ends at 128, and
+    /// sums of two coefficients must fit.
     pub(crate) fn validate_magnitudes(
         &self,
         step: TimeStep,
@@ -283,35 +280,34 @@ impl<const N: usize> MuscleParams<N> {
         let tendon = &self.elements.tendon;
         let stiffness = tendon.stiffness * self.fascicle_length / self.tendon_length;
         within("tendon.stiffness: F0/L_ce0", stiffness, 0.0, 100.0 * largest)?;
-        // So many widths of the toe can be told; less force than this would not do.
+        // The tendon must carry this force at its greatest representable extension.
         let toe_force = tendon.stiffness * tendon.toe;
         within(TOE_FORCE, toe_force, LEAST_FORCE / (2.0 * largest), f64::MAX)?;
         let reach = (self.max_path_length - self.path_domain().0) / self.fascicle_length;
         within(REACH, reach, 0.0, largest)?;
-        // The state holds no longer fascicles, whatever the path does.
+        // The state's range of lengths ends here, whatever the path.
         let (_, longest_path) = self.path_domain_within(longest_path, largest);
         let parallel = &self.elements.parallel;
         let stretch = self.longest_fascicles(longest_path) / self.maximum_fascicle_length();
         within(PARALLEL, parallel.force(stretch), 0.0, largest)?;
         let toes = (stretch - parallel.slack_length) / parallel.toe;
         within(PARALLEL_TOE, toes, f64::MIN, 2.0 * largest)?;
-        // The mechanics take it where the tick starts, on a line through its middle: at the greatest speed half a
-        // tick further on. Until there no sum of it saturates; what it is added to is no more than a few F0, so
-        // that what is negative stays so, and the fascicles then pull with nothing.
+        // The mechanics extrapolate it linearly by half a tick, at most at the greatest speed. No sum of it may
+        // saturate up to there. It is added to a few F0 at most: the sum stays negative and is clamped to 0.
         let compression = self.elements.compression.force(shortest);
         let steepness = self.elements.compression.steepness;
         let extrapolated = 1.0 - 0.5 * steepness * MAXIMUM_SPEED * step.seconds();
         within(COMPRESSION, compression, -2.0 * largest / extrapolated, 0.0)?;
         self.each_fiber(|t| {
             let frequency = MAXIMUM_STIMULATION_FREQUENCY / t.half_force_frequency;
-            // Added to nothing, it may be as large as two coefficients.
+            // Added to nothing, it may be as large as two coefficients together.
             within("half_force_frequency: 500 pps, f0.5", frequency, 0.0, 2.0 * largest)?;
             t.activation.validate_magnitudes(shortest, largest)?;
             t.force_velocity.validate_magnitudes(shortest, longest, largest)
         })
     }
 
-    /// Checks every type; the error says which.
+    /// Validates every type; the error has the type's index.
     fn each_fiber(
         &self,
         check: impl Fn(&FiberType) -> Result<(), ParameterError>,

@@ -1,8 +1,8 @@
-//! Test that in fixed point no sum and no product saturates in a tick that is not flagged: published
-//! muscles, inputs all over their domain, at up to 5 L_ce0/s.
+//! Tests that in fixed point no sum and no product saturates in a tick without flags: published muscles, inputs
+//! over their whole domain, at up to 5 L_ce0/s.
 //!
-//! What is scaled by a constant may: far from where a tendon is slack, and at speeds far from V_Y, softplus
-//! and exp have long reached what they tend to. A tendon that is too taut is flagged.
+//! A product with a constant may saturate: softplus and exp have reached their limits there, far from a slack
+//! tendon and at speeds far from V_Y. A tendon beyond its range is flagged.
 
 use crate::recruitment::{
     EffectiveLength, IntramuscularFes, MotorUnits, NaturalContinuous, NaturalDiscrete, Recruitment,
@@ -15,7 +15,7 @@ use crate::{
     feline_vm4, human_vm4, paper_table_1,
 };
 
-/// Always the same numbers, 0 to 1.
+/// Reproducible pseudo-random numbers, 0 to 1.
 struct Chance(u64);
 
 impl Chance {
@@ -63,7 +63,7 @@ fn muscles() -> Vec<MuscleParams<2>> {
     .collect()
 }
 
-/// Ticks that saturated though no flag was raised, and ticks that raised none.
+/// Ticks that saturated without a flag, and ticks without a flag.
 fn unflagged<R: Recruitment<Fixed, 2>>(params: &MuscleParams<2>, units: &R::Units) -> (u32, u32) {
     let step = TimeStep::MILLISECOND;
     let muscle = Muscle::<Fixed, R, 2>::build_with_units(params, units, step).expect("valid");

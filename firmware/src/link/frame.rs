@@ -1,11 +1,11 @@
-//! Frames: where one ends, and whether it is whole.
+//! Framing: COBS, CRC, version and sequence number.
 
 use crate::link::LinkError;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
 use serde::Serialize;
 
-/// Of this format and its messages: other versions are refused.
+/// Version of the frame format and its messages; others are refused.
 pub const VERSION: u8 = 2;
 /// Longest message, bytes.
 pub const MOST_CONTENT: usize = 1024;
@@ -13,17 +13,17 @@ pub const MOST_CONTENT: usize = 1024;
 const HEADER: usize = 3;
 /// CRC-32 of header and content, in little endian.
 const TRAILER: usize = 4;
-/// A whole frame before COBS.
+/// Longest frame before COBS.
 const MOST_WHOLE: usize = HEADER + MOST_CONTENT + TRAILER;
-/// Longest frame on the line, bytes: COBS adds one in 254, and there is the zero.
+/// Longest frame on the line, bytes: COBS adds one in 254, and a zero ends it.
 pub const MOST_FRAME: usize = cobs::max_encoding_length(MOST_WHOLE) + 1;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// What a frame's checksum begins with: another number for each session, so that frames of another one are none of
-/// this, but for one in 2^31; [`NO_SESSION`] for greetings, and for all that the device says.
+/// Initial value of a frame's checksum, different for each session, so that frames of another session are
+/// refused, except one in 2^31. [`NO_SESSION`] for greetings and for all frames of the device.
 pub type SessionNumber = u32;
-/// See [`SessionNumber`].
+/// The number of no session, see [`SessionNumber`].
 pub const NO_SESSION: SessionNumber = 0;
 
 /// A whole frame.
@@ -33,11 +33,11 @@ pub struct Frame<'a> {
     pub session: SessionNumber,
     /// Sequence number.
     pub sequence: u16,
-    /// A message by postcard.
+    /// A message in postcard's format.
     pub content: &'a [u8],
 }
 
-/// Makes a frame of a message, its zero included; none if the message is longer than [`MOST_CONTENT`].
+/// Encodes a message as a frame, with its zero; none if it is longer than [`MOST_CONTENT`].
 pub fn encode(
     session: SessionNumber,
     sequence: u16,
@@ -55,7 +55,7 @@ pub fn encode(
     let mut frame = Vec::new();
     frame.resize(MOST_FRAME, 0).ok()?;
     let encoded = cobs::try_encode(whole.get(..length + TRAILER)?, &mut frame).ok()?;
-    // The encoder may have written behind its end, where a run of 254 bytes ends there.
+    // The encoder may write one byte beyond its end after a run of 254 bytes.
     frame.truncate(encoded);
     frame.push(0).ok()?;
     Some(frame)
@@ -68,31 +68,31 @@ fn checksum(session: SessionNumber, covered: &[u8]) -> u32 {
     digest.finalize()
 }
 
-/// Collects the bytes of a line until a frame is whole.
+/// Collects the bytes of a line into frames.
 #[derive(Debug, Default)]
 pub struct Receiver {
-    /// Of a frame, without the zero that ends it.
+    /// Bytes of a frame, without its zero.
     bytes: Vec<u8, { MOST_FRAME - 1 }>,
-    /// The frame that was whole last is still in `bytes`.
+    /// `bytes` holds the last complete frame.
     taken: bool,
-    /// More bytes came than a frame has.
+    /// More bytes than the longest frame.
     too_long: bool,
-    /// A byte of this frame did not arrive.
+    /// A byte of this frame was lost.
     incomplete: bool,
 }
 
 impl Receiver {
-    /// Nothing has arrived.
+    /// An empty receiver.
     pub const fn new() -> Self {
         Self { bytes: Vec::new(), taken: false, too_long: false, incomplete: false }
     }
 
-    /// A byte was lost on the line, or arrived as none: what has begun, or begins next, is no frame.
+    /// A byte was lost or damaged: the current or next frame is refused.
     pub fn lost(&mut self) {
         self.incomplete = true;
     }
 
-    /// Takes a byte. Where it ends a frame, of this session or of none, that is what comes back, or why it is none.
+    /// Takes a byte. If it ends a frame, returns the frame, of this session or of none, or an error.
     pub fn push(
         &mut self,
         byte: u8,
@@ -118,7 +118,7 @@ impl Receiver {
     }
 }
 
-/// The frame in the bytes between two zeros.
+/// Decodes the bytes between two zeros.
 fn whole(bytes: &mut [u8], session: SessionNumber) -> Result<Frame<'_>, LinkError> {
     let length = cobs::decode_in_place(bytes).map_err(|_| LinkError::Malformed)?;
     let bytes = bytes.get(..length).ok_or(LinkError::Malformed)?;

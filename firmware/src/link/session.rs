@@ -1,4 +1,4 @@
-//! Which frames are acted upon: each once, and in order.
+//! Sessions: frames are acted upon once and in order.
 
 use crate::link::{Frame, NO_SESSION, Request, SessionNumber};
 use serde::{Deserialize, Serialize};
@@ -6,24 +6,24 @@ use serde::{Deserialize, Serialize};
 /// Why a frame was not acted upon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LinkError {
-    /// Longer than any frame.
+    /// Longer than the longest frame.
     TooLong,
-    /// Shorter than any frame: cut off.
+    /// Shorter than the shortest frame.
     TooShort,
-    /// Not COBS, or bytes of it were lost.
+    /// Invalid COBS, or lost bytes.
     Malformed,
-    /// The checksum is another one.
+    /// Wrong checksum.
     Checksum,
-    /// Of another version of this protocol.
+    /// Another version of the protocol.
     Version {
         /// Its version.
         got: u8,
-        /// The one that is known here.
+        /// The version of this side.
         known: u8,
     },
-    /// Of no session: the first message of one is a greeting, which cannot begin one while armed.
+    /// No session: it begins with a greeting, which is not accepted while armed.
     NoSession,
-    /// A frame that was acted upon before.
+    /// The frame was acted upon before.
     Replayed {
         /// Its sequence number.
         sequence: u16,
@@ -32,32 +32,32 @@ pub enum LinkError {
     OutOfOrder {
         /// Its sequence number.
         got: u16,
-        /// The one that is due.
+        /// The expected sequence number.
         due: u16,
     },
-    /// Not a message, or more than one.
+    /// Not exactly one message.
     NotAMessage,
-    /// A greeting: the device has no random number to begin a session with.
+    /// A greeting, but the random number generator failed.
     NoRandomNumber,
 }
 
-/// What became of frames since boot.
+/// Counts of frames since boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Acted upon.
     pub accepted: u32,
     /// [`LinkError::TooLong`], [`LinkError::TooShort`], [`LinkError::Malformed`], or a wrong checksum.
     pub broken: u32,
-    /// Whole, and refused for version, sequence or message.
+    /// Intact, but refused for version, sequence or message.
     pub refused: u32,
 }
 
 /// The receiving end of a link.
 #[derive(Clone, Debug, Default)]
 pub struct Session {
-    /// Of the greeting, once there was one.
+    /// Number of the session, after a greeting.
     number: SessionNumber,
-    /// Sequence number that is due.
+    /// Expected sequence number.
     due: u16,
     counters: Counters,
 }
@@ -69,17 +69,17 @@ impl Session {
         Self { number: NO_SESSION, due: 0, counters }
     }
 
-    /// Of this session; [`NO_SESSION`] before there is one.
+    /// Number of the session; [`NO_SESSION`] before there is one.
     pub fn number(&self) -> SessionNumber {
         self.number
     }
 
-    /// What became of frames so far.
+    /// Counts of frames.
     pub fn counters(&self) -> Counters {
         self.counters
     }
 
-    /// The request in what a [`Receiver`](crate::link::Receiver) gave, if it is to be acted upon.
+    /// The request in a frame of a [`Receiver`](crate::link::Receiver), if it is to be acted upon.
     ///
     /// A greeting begins a session with any sequence number, of the number that `begin` makes of the host's nonce.
     /// Nothing else is acted upon that does not belong to a session.

@@ -30,7 +30,7 @@ pub struct VmInputF32 {
     pub stimulation_frequency_pps: f32,
 }
 
-/// What a tick yields.
+/// Outputs of a tick.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmOutputF32 {
@@ -42,20 +42,20 @@ pub struct VmOutputF32 {
     pub fascicle_velocity: f32,
     /// Tendon force relative to F0.
     pub relative_force: f32,
-    /// What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
+    /// VM_STATUS_ flags; 0 if nothing was clipped or limited.
     pub status: u16,
 }
 
-/// A state that was saved.
+/// A saved state.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmStateF32 {
-    /// As they come, for storage.
+    /// The words, for storage.
     pub words: [u32; VM_F32_STATE_WORDS],
 }
 
 /// Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
-/// `sizeof(*muscle)`. VM_RESULT_PARAMETER: which one, and its limits, are in `error`, which may be null.
+/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and limits.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_build(
@@ -95,7 +95,7 @@ pub extern "C" fn vm_f32_build(
     }
 }
 
-/// Puts a muscle at rest on a path; VM_RESULT_PARAMETER, and no change, where it cannot be.
+/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_rest(muscle: Option<&mut VmMuscleF32>, path_length_m: f32) -> VmResult {
@@ -111,7 +111,7 @@ pub extern "C" fn vm_f32_rest(muscle: Option<&mut VmMuscleF32>, path_length_m: f
     rested.err().unwrap_or(VmResult::Ok)
 }
 
-/// Steps a muscle by one tick. Inputs out of their ranges are clipped, and said to be in `output->status`.
+/// Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_step(
@@ -141,7 +141,7 @@ pub extern "C" fn vm_f32_step(
     VmResult::Ok
 }
 
-/// Saves a muscle's state, and which muscle, mode and time step it is of.
+/// Saves a muscle's state, with a fingerprint of muscle, mode and time step.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_save(
@@ -159,8 +159,8 @@ pub extern "C" fn vm_f32_save(
     VmResult::Ok
 }
 
-/// Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
-/// if this muscle cannot be in it, and then no change.
+/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step, VM_RESULT_STATE
+/// if it is out of range; the muscle is then unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_restore(
@@ -182,8 +182,8 @@ pub extern "C" fn vm_f32_restore(
     restored.err().unwrap_or(VmResult::Ok)
 }
 
-/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick:
-/// firmware that compares them sees memory that has lost a bit.
+/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick.
+/// Firmware compares them to detect a flipped bit.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_f32_checksums(

@@ -30,7 +30,7 @@ pub struct VmInputFixed {
     pub stimulation_tenths_pps: u16,
 }
 
-/// What a tick yields.
+/// Outputs of a tick.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmOutputFixed {
@@ -40,22 +40,22 @@ pub struct VmOutputFixed {
     pub fascicle_length: i32,
     /// Fascicle velocity, 2^-24 L_ce0/s, positive when lengthening.
     pub fascicle_velocity: i32,
-    /// Tendon force relative to F0, 2^-24 F0: finer than mN where F0 is below 16,777 N.
+    /// Tendon force relative to F0, 2^-24 F0: finer than mN if F0 is below 16,777 N.
     pub relative_force: i32,
-    /// What had to be saturated: VM_STATUS_ flags; 0 where nothing had to be.
+    /// VM_STATUS_ flags; 0 if nothing was clipped or limited.
     pub status: u16,
 }
 
-/// A state that was saved.
+/// A saved state.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmStateFixed {
-    /// As they come, for storage.
+    /// The words, for storage.
     pub words: [u32; VM_FIXED_STATE_WORDS],
 }
 
 /// Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
-/// `sizeof(*muscle)`. VM_RESULT_PARAMETER: which one, and its limits, are in `error`, which may be null.
+/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and limits.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_build(
@@ -95,7 +95,7 @@ pub extern "C" fn vm_fixed_build(
     }
 }
 
-/// Puts a muscle at rest on a path; VM_RESULT_PARAMETER, and no change, where it cannot be.
+/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_rest(
@@ -114,7 +114,7 @@ pub extern "C" fn vm_fixed_rest(
     rested.err().unwrap_or(VmResult::Ok)
 }
 
-/// Steps a muscle by one tick. Inputs out of their ranges are clipped, and said to be in `output->status`.
+/// Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_step(
@@ -144,7 +144,7 @@ pub extern "C" fn vm_fixed_step(
     VmResult::Ok
 }
 
-/// Saves a muscle's state, and which muscle, mode and time step it is of.
+/// Saves a muscle's state, with a fingerprint of muscle, mode and time step.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_save(
@@ -162,8 +162,8 @@ pub extern "C" fn vm_fixed_save(
     VmResult::Ok
 }
 
-/// Restores a state that was saved; VM_RESULT_OTHER_MUSCLE if by another muscle, mode or time step, VM_RESULT_STATE
-/// if this muscle cannot be in it, and then no change.
+/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step, VM_RESULT_STATE
+/// if it is out of range; the muscle is then unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_restore(
@@ -185,8 +185,8 @@ pub extern "C" fn vm_fixed_restore(
     restored.err().unwrap_or(VmResult::Ok)
 }
 
-/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick:
-/// firmware that compares them sees memory that has lost a bit.
+/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick.
+/// Firmware compares them to detect a flipped bit.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_checksums(

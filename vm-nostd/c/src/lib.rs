@@ -1,8 +1,7 @@
 //! vm-nostd for C.
 //!
-//! What C passes is looked at before it is used: no pointer may be null, sizes must be those of this library, and
-//! a muscle must have been built. The only `unsafe` is in the names of functions, and where a muscle's bytes are
-//! taken for what [`slot`] has built there.
+//! Arguments are checked: no pointer may be null, sizes must be those of this library, and a muscle must have
+//! been built. The only `unsafe` is in the exported names, and where [`slot`] reads a muscle that it has built.
 #![cfg_attr(target_os = "none", no_std)]
 
 mod f32;
@@ -12,7 +11,7 @@ mod result;
 mod slot;
 mod status;
 
-/// Where nothing can go wrong, nothing has to be done.
+/// Unreachable: no code path panics.
 #[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

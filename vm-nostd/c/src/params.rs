@@ -1,4 +1,4 @@
-//! Parameters as C has them.
+//! Parameters in C.
 
 use crate::result::{VmError, VmResult};
 use crate::slot::VM_FIBERS;
@@ -18,17 +18,17 @@ pub struct VmMuscleParams {
     pub fascicle_length_m: f64,
     /// Optimal tendon length L_se0, m; 0.0005 to 2.
     pub tendon_length_m: f64,
-    /// Longest musculotendon path L_mt_max, m: it scales the parallel elastic element, and paths may be longer.
+    /// Longest musculotendon path L_mt_max, m. It scales the parallel elastic element; paths may be longer.
     pub max_path_length_m: f64,
     /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
     pub recruitment_saturation: f64,
-    /// What the fibre types share.
+    /// Coefficients shared by the fibre types.
     pub elements: VmElements,
     /// Fibre types in order of rank; their fractions add to 1.
     pub fibers: [VmFiber; VM_FIBERS],
 }
 
-/// What fibre types share.
+/// Coefficients shared by the fibre types.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmElements {
@@ -66,9 +66,9 @@ pub struct VmFiber {
     pub fraction: f64,
     /// Order of recruitment: super-slow 1, slow 2, fast 3; 1 to 255.
     pub rank: u8,
-    /// Whether it sags: 0 or 1.
+    /// 1 if the type has sag, 0 if not.
     pub has_sag: u8,
-    /// Whether it yields: 0 or 1.
+    /// 1 if the type has yield, 0 if not.
     pub has_yield: u8,
     /// f_0.5, pps.
     pub half_force_frequency: f64,
@@ -119,7 +119,7 @@ pub struct VmFiber {
 }
 
 impl VmMuscleParams {
-    /// The same for the model; flags that are neither 0 nor 1 are refused.
+    /// Converts to the model's type; flags other than 0 and 1 are refused.
     pub(crate) fn model(&self) -> Result<MuscleParams<VM_FIBERS>, ParameterError> {
         let e = &self.elements;
         let [first, second] = self.fibers;
@@ -271,7 +271,7 @@ impl VmFiber {
 }
 
 /// Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are one half each.
-/// A null pointer is passed over.
+/// Null pointers are skipped.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_params_paper(
@@ -284,8 +284,8 @@ pub extern "C" fn vm_params_paper(
     give(fast, || VmFiber::of(&paper_table_1::FAST));
 }
 
-/// Elements, a slow and a fast fibre type of man, as Virtual Muscle 4.0 has them; fractions are one half each.
-/// A null pointer is passed over.
+/// Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are one half each.
+/// Null pointers are skipped.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_params_human(
@@ -304,7 +304,7 @@ fn give<T>(place: Option<&mut T>, value: impl FnOnce() -> T) {
     }
 }
 
-/// What became of a parameter.
+/// Result of a parameter.
 pub(crate) fn refused(error: ParameterError, place: Option<&mut VmError>) -> VmResult {
     give(place, || error.into());
     VmResult::Parameter

@@ -1,44 +1,44 @@
-//! What functions answer.
+//! Results of functions.
 
 use core::ffi::c_char;
 use model::{Limit, ParameterError, RestoreError};
 
-/// What a function answers; VM_RESULT_OK is 0, and everything else has changed nothing.
+/// Result of a function: VM_RESULT_OK (0), or an error that has changed nothing.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VmResult {
-    /// It was done.
+    /// Success.
     Ok = 0,
     /// A pointer is null.
     NullPointer = 1,
-    /// The muscle has another size than in this library: header and library are of different versions.
+    /// Wrong size of the muscle: header and library are of different versions.
     Size = 2,
-    /// The muscle was not built, or something has written over it.
+    /// The muscle was not built, or was overwritten.
     NotBuilt = 3,
-    /// A parameter is out of its range; which one is in VmError.
+    /// A parameter is out of range; VmError has details.
     Parameter = 4,
-    /// These words are no state of this muscle.
+    /// The words are out of range for this muscle.
     State = 5,
-    /// These words were saved by another muscle, or for another mode or time step.
+    /// The words are of another muscle, mode or time step.
     OtherMuscle = 6,
 }
 
-/// Bytes of VmError's field, its final 0 included.
+/// Bytes of VmError's field, including the final 0.
 pub const VM_FIELD_SIZE: usize = 96;
 
 /// A parameter that was refused.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmError {
-    /// Its name, as in VmMuscleParams, ended by 0; what follows a colon is what was derived from it and refused.
+    /// Name as in VmMuscleParams, ended by 0; a derived quantity follows after a colon.
     pub field: [c_char; VM_FIELD_SIZE],
-    /// Index of the fibre type that it belongs to; -1 where it is the muscle's own.
+    /// Index of the fibre type; -1 for the muscle's own parameters.
     pub fiber: i32,
     /// The refused value, in the field's unit.
     pub value: f64,
-    /// The least that is taken, in the field's unit.
+    /// Least allowed value, in the field's unit.
     pub least: f64,
-    /// The most that is taken, in the field's unit.
+    /// Greatest allowed value, in the field's unit.
     pub most: f64,
 }
 
@@ -51,7 +51,7 @@ impl From<ParameterError> for VmError {
             _ => (1.0, f64::INFINITY),
         };
         let mut field = [0; VM_FIELD_SIZE];
-        // The last one stays 0. Characters of C may have a sign.
+        // The last byte stays 0. `char` may be signed.
         let room = VM_FIELD_SIZE - 1;
         for (place, byte) in field.iter_mut().take(room).zip(error.field.bytes()) {
             *place = byte as c_char;

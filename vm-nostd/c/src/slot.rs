@@ -1,4 +1,4 @@
-//! A muscle in memory that belongs to C.
+//! A muscle in memory owned by C.
 
 use crate::result::VmResult;
 use core::mem::MaybeUninit;
@@ -13,20 +13,20 @@ pub const VM_FIBERS: usize = 2;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VmMode {
-    /// Naturally, continuous.
+    /// Natural continuous recruitment.
     Continuous = 0,
-    /// By intramuscular FES.
+    /// Intramuscular FES.
     Fes = 1,
 }
 
-/// Bytes of `S`'s muscles as C has them, of 8-byte alignment: a mark, and a muscle once the mark says so.
+/// Memory of a muscle in C, aligned to 8 bytes: a mark, and a muscle if the mark is set.
 #[repr(C, align(8))]
 pub struct Slot<S: Scalar, const MARK: u32> {
     mark: u32,
     muscle: MaybeUninit<BankedMuscle<S, VM_FIBERS>>,
 }
 
-/// How many words a saved state has, whatever the mode.
+/// Words of a saved state, in the larger of both modes.
 pub const fn words<S: Scalar>() -> usize {
     let continuous = State::<S, NaturalContinuous, VM_FIBERS>::SAVED_WORDS;
     assert!(continuous == State::<S, IntramuscularFes, VM_FIBERS>::SAVED_WORDS);
@@ -34,12 +34,12 @@ pub const fn words<S: Scalar>() -> usize {
 }
 
 impl<S: Scalar, const MARK: u32> Slot<S, MARK> {
-    /// Puts a muscle into memory that may hold anything.
+    /// Writes a muscle into uninitialised memory.
     pub fn put(slot: &mut MaybeUninit<Self>, muscle: BankedMuscle<S, VM_FIBERS>) {
         slot.write(Self { mark: MARK, muscle: MaybeUninit::new(muscle) });
     }
 
-    /// The muscle, if one was put there.
+    /// The muscle, if there is one.
     pub fn get(&self) -> Result<&BankedMuscle<S, VM_FIBERS>, VmResult> {
         if self.mark != MARK {
             return Err(VmResult::NotBuilt);
@@ -49,7 +49,7 @@ impl<S: Scalar, const MARK: u32> Slot<S, MARK> {
         Ok(unsafe { self.muscle.assume_init_ref() })
     }
 
-    /// The same, to be changed.
+    /// The muscle, mutable.
     pub fn get_mut(&mut self) -> Result<&mut BankedMuscle<S, VM_FIBERS>, VmResult> {
         if self.mark != MARK {
             return Err(VmResult::NotBuilt);
@@ -60,7 +60,7 @@ impl<S: Scalar, const MARK: u32> Slot<S, MARK> {
     }
 }
 
-/// A mode, if there is one of that number.
+/// Mode of a number, if there is one.
 pub(crate) fn mode_of(mode: u32) -> Result<VmMode, ParameterError> {
     match mode {
         0 => Ok(VmMode::Continuous),
@@ -72,7 +72,7 @@ pub(crate) fn mode_of(mode: u32) -> Result<VmMode, ParameterError> {
     }
 }
 
-/// Keeps words where C wants them.
+/// Copies words to C.
 pub(crate) fn keep(words: impl Iterator<Item = u32>, places: &mut [u32]) {
     places.iter_mut().zip(words).for_each(|(place, word)| *place = word);
 }

@@ -1,31 +1,31 @@
-//! What a tick had to saturate.
+//! Flags of a tick.
 
 use model::Status;
 
 /// Activation was outside 0..1 and was clipped.
 pub const VM_STATUS_ACTIVATION_CLIPPED: u16 = 1;
-/// Activation was not a number (taken as 0) or infinite (clipped).
+/// Activation was NaN (taken as 0) or infinite (clipped).
 pub const VM_STATUS_ACTIVATION_NOT_FINITE: u16 = 2;
 /// Stimulation frequency was outside 0..500 pps and was clipped.
 pub const VM_STATUS_FREQUENCY_CLIPPED: u16 = 4;
-/// Stimulation frequency was not a number (taken as 0) or infinite (clipped).
+/// Stimulation frequency was NaN (taken as 0) or infinite (clipped).
 pub const VM_STATUS_FREQUENCY_NOT_FINITE: u16 = 8;
 /// Path length was outside the muscle's range and was clipped.
 pub const VM_STATUS_PATH_LENGTH_CLIPPED: u16 = 16;
-/// Path length was not a number (the one before was kept) or infinite (clipped).
+/// Path length was NaN (the last one was kept) or infinite (clipped).
 pub const VM_STATUS_PATH_LENGTH_NOT_FINITE: u16 = 32;
-/// Fascicles were where the filaments' equations do not hold; these were taken at the edge of their range.
+/// Fascicles left the validity range of the filaments' equations, which were evaluated at its edge.
 pub const VM_STATUS_FASCICLE_OUTSIDE_DOMAIN: u16 = 64;
-/// The fascicles were stopped at the least or greatest length the state can have.
+/// Fascicle length was clamped to the state range.
 pub const VM_STATUS_FASCICLE_LENGTH_LIMITED: u16 = 128;
-/// The fascicles were held at the greatest speed the state can have.
+/// Fascicle velocity was clamped to the state range.
 pub const VM_STATUS_FASCICLE_VELOCITY_LIMITED: u16 = 256;
-/// Forces were far out of balance, as when a path jumps: the force is less accurate.
+/// The residual of the force balance was too large, as when the path jumps: the force is less accurate.
 pub const VM_STATUS_MECHANICS_UNSETTLED: u16 = 512;
-/// The tendon's force was taken at the most that fixed point can tell.
+/// Tendon force saturated in fixed point.
 pub const VM_STATUS_TENDON_FORCE_LIMITED: u16 = 1024;
 
-/// That they are the model's, and all of them.
+/// The flags are the model's, and complete.
 macro_rules! same {
     ($($name:ident = $flag:ident,)*) => {
         $(const _: () = assert!($name == Status::$flag.bits());)*

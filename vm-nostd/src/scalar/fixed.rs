@@ -1,4 +1,4 @@
-//! Fixed point: 32 bits with 24 behind the point, and 64 with 56 for what lags move.
+//! Fixed point: Q8.24, and Q8.56 for the state of lags.
 
 #[cfg(test)]
 mod every;
@@ -27,7 +27,7 @@ use number::ONE;
 const PATH_UNITS: f64 = 512e6;
 const UNITS: f64 = (1 << 24) as f64;
 const QUANTITY_UNITS: f64 = (1 << 16) as f64;
-/// Q8.56 has 32 bits more behind the point than Q8.24.
+/// Q8.56 has 32 more fractional bits than Q8.24.
 const SLOW_SHIFT: u32 = 32;
 
 impl Sealed for Fixed {}
@@ -87,7 +87,7 @@ impl Scalar for Fixed {
     }
     #[inline(always)]
     fn is_saturated(self) -> bool {
-        // A sum of sums can end a unit below. No product with another number is asked.
+        // A rounded sum can be one ULP lower.
         self >= Self::from_bits(i32::MAX - 1)
     }
 
@@ -104,7 +104,7 @@ impl Scalar for Fixed {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        // All bits of what is negative are turned, which is a unit short; no branch.
+        // One's complement of negative values, without a branch: one ULP short.
         let sign = self.to_bits() >> 31;
         Self::from_bits((self.to_bits() ^ sign).saturating_sub(sign))
     }
@@ -162,7 +162,7 @@ impl Scalar for Fixed {
         Self::from_bits(whole.saturating_add(half))
     }
     fn moved(slow: i64, difference: Self, share: u32) -> i64 {
-        // Where it comes to is between numbers that fit, whatever a sum on the way is.
+        // The result lies between two representable numbers, even if an intermediate sum wraps.
         slow.wrapping_add(i64::from(difference.to_bits()) * i64::from(share))
     }
     fn moved_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
@@ -174,7 +174,7 @@ impl Scalar for Fixed {
     fn done(self) -> u32 {
         u32::MAX - exponential::decay(self.to_bits())
     }
-    /// Each within 2^-24: of x, half may be cut off by half a unit, and that is squared.
+    /// Each within 2^-24: halving x may cut off half an ULP, which is squared.
     #[inline(always)]
     fn lags(self) -> [Lags<u32>; 2] {
         let x = self.to_bits().max(0);

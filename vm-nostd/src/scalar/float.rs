@@ -6,7 +6,7 @@ mod single;
 use super::sealed::Sealed;
 use super::{Lags, Scalar};
 
-/// In `f64`, for what is computed when a muscle is built.
+/// In `f64`, for computations when a muscle is built.
 pub(crate) use double::{one_minus_exp, square_root, tangent};
 
 macro_rules! float {
@@ -116,12 +116,12 @@ macro_rules! float {
                 let square = steepness * steepness;
                 let bent = self * half_curvature;
                 let linear = straight + square - bent;
-                // linear² + 4 straight bent, as a sum of what is positive.
+                // linear² + 4 straight bent, as a sum of positive terms.
                 let difference = straight + bent - square;
                 let discriminant = difference * difference + 4.0 * straight * square;
                 let root = $kernels::square_root(discriminant);
-                // The root is |difference| at least: neither sum is less but by rounding, where
-                // both its parts are large.
+                // The root is at least |difference|: each sum is smaller only by rounding, and only
+                // if both of its terms are large.
                 let whole = Scalar::max(linear + root, 2.0 * straight);
                 let after = Scalar::max(whole + 2.0 * bent, 2.0 * square);
                 let reciprocal = 1.0 / (whole * after);
@@ -141,7 +141,7 @@ macro_rules! float {
                 slow + difference * share
             }
             fn moved_by_two(slow: Self, first: (Self, Self), second: (Self, Self)) -> Self {
-                // In changes, not in values: a slow lag's are far below the values' last bits.
+                // Compares changes: those of a slow lag are far below the ULP of its value.
                 slow + (first.0 * first.1 + second.0 * second.1)
             }
             fn share(value: f64) -> Self {
@@ -247,8 +247,8 @@ float!(f64, u64, double, 2);
 mod tests {
     use super::*;
 
-    /// Calls `check` with a residual, a line, a steepness and half a curvature, over all that a muscle
-    /// may have.
+    /// Calls `check` with a residual, a line, a steepness and half a curvature, over the ranges of valid
+    /// muscles.
     fn over_balances(check: impl Fn(f64, f64, f64, f64)) {
         for line in [2e-3, 0.05, 1.0, 50.0] {
             for steepness in [1e-5, 0.02, 1.0, 30.0] {
@@ -280,8 +280,8 @@ mod tests {
             let found = r.hyperbola_root(l, s, h);
             let [r, l, s, h] = [r, l, s, h].map(f64::from);
             let exact = r.hyperbola_root(l, s, h);
-            // Beside a large product the line's part is rounded, and in the share the steepness' own: where the
-            // least steepness stands for none, little of it may be left.
+            // Next to a large product the line's term is rounded, and in the secant the steepness': if the
+            // least steepness stands for 0, few of its bits remain.
             let bent = (r * h).abs();
             let of_root = 1e-5 * (1.0 + bent / (l * s));
             let of_share = of_root + 2.2e-6 * bent / (s * s);

@@ -1,9 +1,9 @@
-//! Elementary functions that can be evaluated when the crate is compiled, for tables; to the last
-//! few bits of `f64`. Never used in a tick.
+//! `const` elementary functions for tables, accurate to the last few bits of `f64`. Never used in a
+//! tick.
 
 /// e^x for -100 <= x <= 100, within 3e-13 of its value.
 pub(super) const fn exp(x: f64) -> f64 {
-    // e^x = (e^(x/256))^256; the series converges at once where |x| < 1/2.
+    // e^x = (e^(x/256))^256; the series converges fast for |x| < 1/2.
     let y = x / 256.0;
     let (mut term, mut sum, mut n) = (1.0, 1.0, 1.0);
     while n < 20.0 {

@@ -1,7 +1,7 @@
-//! A muscle in a task of embassy, woken by the tick. A task runs when others let it: for a tick that nothing may
-//! delay, spawn it on an executor in an interrupt of its own (`InterruptExecutor`), or take the RTIC example.
+//! A muscle in an embassy task, woken by the tick. Other tasks may delay it: for a hard tick, spawn it on an
+//! `InterruptExecutor`, or use the RTIC example.
 //!
-//! The chip is an LM3S6965, as there; in fixed point, for it has no floating-point unit.
+//! The chip is an LM3S6965. It has no floating-point unit: the muscle is in fixed point.
 #![no_std]
 #![no_main]
 
@@ -28,10 +28,10 @@ const PARAMS: MuscleParams<2> = MuscleParams {
 };
 /// Hz; 1 kHz ticks.
 const CORE_CLOCK: u32 = 12_000_000;
-/// Of the muscle at first, µm.
+/// Initial path length, µm.
 const PATH_UM: i32 = 160_000;
 
-/// The tick has come.
+/// Signals a tick.
 static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 /// Force of the last tick, mN.
 static FORCE: Signal<CriticalSectionRawMutex, i32> = Signal::new();
@@ -53,7 +53,7 @@ async fn main(spawner: Spawner) {
     }
 }
 
-/// Steps a muscle whenever the tick comes.
+/// Steps a muscle in every tick.
 #[embassy_executor::task]
 async fn step() {
     let rest = Input::<Fixed>::from_integers(0, PATH_UM, 0);
@@ -62,7 +62,7 @@ async fn step() {
     let Ok((muscle, mut state)) = built else { return };
     loop {
         TICK.wait().await;
-        // From a sensor, and from whoever wants something of the muscle.
+        // From a sensor and a controller.
         let input = Input::<Fixed>::from_integers(500, PATH_UM, 0);
         FORCE.signal(muscle.step(&mut state, input).force);
     }

@@ -1,7 +1,7 @@
-//! A muscle in a hard tick of RTIC: the tick interrupts whatever else there is, and steps it.
+//! A muscle in a hard RTIC tick, which interrupts everything else.
 //!
-//! The chip is an LM3S6965, whose peripherals crate is small; any other goes the same way. In fixed point, for it
-//! has no floating-point unit.
+//! The chip is an LM3S6965, whose peripheral crate is small. It has no floating-point unit: the muscle is in
+//! fixed point.
 #![no_std]
 #![no_main]
 
@@ -27,12 +27,12 @@ mod app {
     };
     /// Hz; 1 kHz ticks.
     const CORE_CLOCK: u32 = 12_000_000;
-    /// Of the muscle at first, µm.
+    /// Initial path length, µm.
     const PATH_UM: i32 = 160_000;
 
     #[shared]
     struct Shared {
-        /// Of the last tick, mN.
+        /// Force of the last tick, mN.
         force: i32,
     }
 
@@ -47,7 +47,7 @@ mod app {
         let rest = Input::<Fixed>::from_integers(0, PATH_UM, 0);
         let built = FesMuscle::build(&PARAMS, TimeStep::MILLISECOND)
             .and_then(|muscle| Ok((muscle, muscle.rest(rest.path_length)?)));
-        // Parameters are constants here: they are right, or this program never ran.
+        // The parameters are constants: an error here is found in the first run.
         let Ok((muscle, state)) = built else {
             loop {
                 cortex_m::asm::wfi();
@@ -62,16 +62,16 @@ mod app {
         (Shared { force: 0 }, Local { muscle, state })
     }
 
-    /// Every millisecond. Deadline: the next one.
+    /// Runs every millisecond; deadline: the next one.
     #[task(binds = SysTick, priority = 2, local = [muscle, state], shared = [force])]
     fn tick(mut context: tick::Context) {
-        // From a sensor, and from what stimulates.
+        // From a sensor and the stimulator.
         let input = Input::<Fixed>::from_integers(500, PATH_UM, 250);
         let output = context.local.muscle.step(context.local.state, input);
         context.shared.force.lock(|force| *force = output.force);
     }
 
-    /// Whatever can wait.
+    /// Low-priority work.
     #[idle(shared = [force])]
     fn idle(mut context: idle::Context) -> ! {
         loop {

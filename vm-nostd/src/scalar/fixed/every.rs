@@ -1,15 +1,14 @@
-//! Every number a kernel can be given, for its tests.
+//! Exhaustive arguments of a kernel, for tests.
 
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::thread;
 
 pub(super) const UNIT: f64 = (1_u32 << 24) as f64;
 
-/// A built-in check at every operation makes every number too many: then, every so manyth.
+/// With overflow checks all arguments would take too long: every n-th only.
 const STEP: usize = if cfg!(debug_assertions) { 1009 } else { 1 };
 
-/// The largest `error` of the numbers from `least` to `most`, both included, on all cores; not a
-/// number if any is.
+/// Largest `error` of all arguments from `least` to `most`, inclusive, on all cores; NaN if any is.
 pub(super) fn worst(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) -> f64 {
     const BLOCK: i64 = 1 << 20;
     let next = AtomicI64::new(least);
@@ -22,7 +21,7 @@ pub(super) fn worst(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) ->
             }
             for number in (first..(first + BLOCK).min(most + 1)).step_by(STEP) {
                 let error = error(number);
-                // Written so that not-a-number stays.
+                // Keeps NaN.
                 worst = if error <= worst { worst } else { error };
             }
         }
@@ -45,11 +44,11 @@ pub(super) fn worst_between(least: i64, most: i64, error: impl Fn(i32) -> f64 + 
     let all = i64::from(i32::MIN) / SPACE..=i64::from(i32::MAX) / SPACE;
     let spaced = worst(*all.start(), *all.end(), |place| error((place * SPACE) as i32));
     let ends = [i32::MIN, i32::MIN + 1, i32::MAX - 1, i32::MAX].map(error);
-    // Written so that not-a-number stays.
+    // Keeps NaN.
     ends.into_iter().chain([spaced]).fold(every, |a, b| if b <= a { a } else { b })
 }
 
-/// Numbers of any length, always the same.
+/// Reproducible pseudo-random numbers of any magnitude.
 pub(super) fn of_any_length() -> impl Iterator<Item = i32> {
     let mut state = 1_u64;
     core::iter::repeat_with(move || {

@@ -20,7 +20,7 @@ static POWERS_OF_TWO: [u32; POWERS] = {
     table
 };
 
-/// What the table takes.
+/// Bytes of the table.
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
 

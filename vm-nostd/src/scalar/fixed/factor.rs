@@ -1,4 +1,4 @@
-//! Constants of any magnitude.
+//! Constant factors of any magnitude.
 
 use super::number::{exact, whole};
 use crate::checksum::summed;
@@ -36,8 +36,8 @@ impl Factor {
     }
 
     /// Units times the factor, rounded, within 0.51 units and 2^-31 of the product (of a factor below 2^-32, half its
-    /// mantissa's last bit); saturated. Lengths and their changes go through this: cut off
-    /// tick by tick, fascicles would creep.
+    /// mantissa's last bit); saturated. It rounds to nearest because truncation of
+    /// lengths in every tick would make the fascicles drift.
     ///
     /// # Scaling and overflow
     /// Of a factor below 1/2, all of the product's low word is shifted out, and its high word, at
@@ -52,9 +52,9 @@ impl Factor {
     }
 }
 
-/// The nearest whole number that fits.
+/// Nearest whole number, saturated.
 pub(super) fn nearest(value: f64) -> i32 {
-    // Adding a half and cutting off rounds what is positive; `as` saturates.
+    // Adding a half and truncating rounds positive values; `as` saturates.
     (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
 }
 

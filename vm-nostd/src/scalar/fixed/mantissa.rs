@@ -1,7 +1,7 @@
-//! Logarithm and reciprocal, by mantissas: numbers 1 <= m < 2 in 32 bits, the first of them set.
+//! Logarithm and reciprocal of mantissas: 1 <= m < 2 in Q1.31.
 //!
-//! Both start from the same table: c = 1/m at the middle of the 64th of the range that m is in,
-//! and then go on with r = m c - 1, |r| < 1/128.
+//! Both use the table of c = 1/m at the midpoints of 64 intervals, then a series in r = m c - 1,
+//! |r| < 1/128.
 
 use super::number::high;
 use crate::scalar::series;
@@ -34,7 +34,7 @@ static LOGARITHMS: [i32; ENTRIES] = {
     table
 };
 
-/// What the two tables take.
+/// Bytes of the two tables.
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 
@@ -69,7 +69,7 @@ pub(super) fn reciprocal(m: u32) -> u32 {
 /// ln 2 in Q1.31.
 const LN_2: i64 = 1_488_522_236;
 
-/// ln x in Q8.24 of a positive number; within 1 unit. For 0 and below it is that of one unit.
+/// ln x in Q8.24 of a positive number, within 1 ULP; of 0 and below, that of one ULP.
 ///
 /// # Scaling and overflow
 /// x is shifted left until its first bit is set; the power of two taken out is -24 to 6. The mantissa's

@@ -1,20 +1,18 @@
-//! The fixed-point number itself: Q8.24 that saturates.
+//! The fixed-point number: saturating Q8.24.
 
 use core::ops::{Add, Mul, Neg, Sub};
 use fixed::types::I8F24;
 
-/// Bits behind the point.
+/// Fractional bits.
 pub(super) const FRACTION: u32 = 24;
 /// 1 in Q8.24.
 pub(super) const ONE: i32 = 1 << FRACTION;
 
-/// The number that the model is computed in where there is no floating-point unit: Q8.24, from
-/// -128 to 128 in steps of 6e-8, as fine as `f32` is at 1. Its sums and products saturate: nothing
-/// wraps around.
+/// Fixed point for cores without a floating-point unit: Q8.24, from -128 to 128 with an ULP of 6e-8, like
+/// `f32` near 1. Sums and products saturate: nothing wraps around.
 ///
-/// It is an [`I8F24`], and comes from and turns into one. Products are those of that type, the next
-/// lower of what is not exact, in fewer instructions; where they saturate they are up to 255 units from
-/// the end, for which it takes none.
+/// It converts from and to [`I8F24`]. Products round toward minus infinity, as of that type, in fewer
+/// instructions; on overflow they saturate to within 255 ULP of the range's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fixed(I8F24);
 
@@ -87,36 +85,36 @@ pub(super) fn exact(a: i32, b: i32) -> (i32, u32) {
     ((product >> 32) as i32, product as u32)
 }
 
-/// The high word of a product: of two fractions, their product with 32 bits less.
+/// High word of a product: of two fractions, their product with 32 fewer fractional bits.
 pub(super) fn high(a: i32, b: i32) -> i32 {
     exact(a, b).0
 }
 
-/// Two words less their last 24 bits: the next lower number, saturated.
+/// Two words without their last 24 bits: rounded toward minus infinity, saturated.
 ///
 /// # Scaling and overflow
-/// What is left fits if the high word has 24 bits. One that has more is replaced by the greatest or
-/// the least that has not, which takes one instruction; the low word's first byte follows it in any
-/// case, so that what saturates is up to 255 units from the end.
+/// The result fits if the high word has 24 bits; otherwise the high word is clamped to 24 bits by one
+/// instruction (SSAT). The first byte of the low word is appended in any case, so that an overflow
+/// saturates to within 255 ULP of the range's end.
 #[inline(always)]
 fn number((high, low): (i32, u32)) -> i32 {
     const MOST: i32 = 1 << (FRACTION - 1);
     (high.clamp(-MOST, MOST - 1) << (32 - FRACTION)) | (low >> FRACTION) as i32
 }
 
-/// Two words less their last `bits`, 1 to 32: the next lower number, saturated.
+/// Two words without their last `bits`, 1 to 32: rounded toward minus infinity, saturated.
 ///
 /// # Scaling and overflow
-/// What is left fits if the high word, shifted left, comes back when it is shifted right. The test
-/// is on words, since a compiler that sees a comparison of 64 bits takes twice as long for it.
+/// The result fits if shifting the high word left and right again restores it. The check uses 32-bit
+/// words: a 64-bit comparison compiles to twice the instructions.
 pub(super) fn whole((high, low): (i32, u32), bits: u32) -> i32 {
     let left = 32 - bits;
     let word = (high << left) | (low >> 1 >> (bits - 1)) as i32;
-    // The greatest number, or with every bit turned the least.
+    // The greatest number, or its complement, the least.
     if word >> left == high { word } else { i32::MAX ^ (high >> 31) }
 }
 
-/// How often sums and products of a thread have saturated, for tests.
+/// Number of saturated sums and products of a thread, for tests.
 #[cfg(test)]
 pub(crate) mod saturations {
     use core::cell::Cell;
@@ -129,7 +127,7 @@ pub(crate) mod saturations {
         COUNT.with(|count| count.set(count.get() + u32::from(saturated)));
     }
 
-    /// How many there were since the last time.
+    /// Number since the last call.
     pub(crate) fn take() -> u32 {
         COUNT.with(|count| count.replace(0))
     }

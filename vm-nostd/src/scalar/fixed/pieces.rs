@@ -1,4 +1,4 @@
-//! Softplus and Weibull's distribution, as cubics between nodes made when the crate is compiled.
+//! Softplus and Weibull's distribution: cubic interpolation between compile-time nodes.
 
 use super::number::high;
 use crate::scalar::series;
@@ -16,9 +16,8 @@ const fn node(value: f64, slope: f64) -> Node {
     ((value * UNITS + 0.5) as i32, (slope * UNITS / (1 << NODE_BITS) as f64 + 0.5) as i32)
 }
 
-/// The cubic through a node and the next, with their slopes, at a `place` counted from the first
-/// node in Q8.24; value and slope by pieces, in Q2.30. Beyond the last node, what they are somewhere in
-/// the last piece, which is to be flat.
+/// Cubic Hermite interpolation at a `place` counted from the first node in Q8.24; value, and slope per piece,
+/// in Q2.30. Beyond the last node the result is that of the last piece, which must be flat.
 ///
 /// # Scaling and overflow
 /// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
@@ -39,13 +38,13 @@ fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) 
     (value, slope)
 }
 
-/// A value, and a slope by pieces, in Q2.30 as a value and a slope by units in Q8.24; rounded.
+/// Converts a value and a slope per piece in Q2.30 to a value and a slope per unit in Q8.24; rounds.
 fn in_units((value, slope): (i32, i32)) -> (i32, i32) {
     let rounded = |value: i32, bits: u32| (value + (1 << (bits - 1))) >> bits;
     (rounded(value, 6), rounded(slope, 6 - NODE_BITS))
 }
 
-/// Beyond this distance from 0, the tail of softplus is below half a unit of 2^-24.
+/// Beyond this distance from 0, the tail of softplus is below half an ULP.
 const LONGEST_TAIL: usize = 18;
 const SOFTPLUS_NODES: usize = (LONGEST_TAIL << NODE_BITS) + 1;
 
@@ -95,7 +94,7 @@ pub(super) fn weibull(x: i32) -> (i32, i32) {
     in_units(between(&WEIBULL, place as u32))
 }
 
-/// What the two tables take.
+/// Bytes of the two tables.
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = (SOFTPLUS_NODES + WEIBULL_NODES) * size_of::<Node>();
 

@@ -1,12 +1,11 @@
-//! Quotients: products with a reciprocal; there is no division.
+//! Quotients as products with a reciprocal, without a division.
 
 use super::factor::Factor;
 use super::mantissa;
 use super::number::{FRACTION, exact};
 
-/// What turns numerators into quotients by a positive denominator, in Q8.24, for numbers in one
-/// format; quotients are within 2^-28 of their value and 1 unit. A denominator below a unit counts as
-/// one.
+/// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients are within
+/// 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
 ///
 /// # Scaling and overflow
 /// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in Q1.31; its
@@ -19,7 +18,7 @@ pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     Factor::scaled_down(reciprocal as i32, 38 - zeros)
 }
 
-/// `numerator/denominator`, as there.
+/// `numerator/denominator`, within the same bound.
 pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
     reciprocal_factor(denominator).times(numerator)
 }

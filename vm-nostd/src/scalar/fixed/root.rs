@@ -1,12 +1,12 @@
-//! Where a line and a hyperbola make up for a residual: one quadratic equation, and its square root.
+//! Force balance of a residual, a line and a hyperbola: a quadratic equation and its square root.
 
 use super::number::{exact, high};
 use super::quotient::{ratio, word};
 use crate::scalar::series;
 
 /// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend = -half_curvature/steepness,
-/// and 1/(1 + bend u), in Q8.24, saturated; line and steepness are positive. Both are within 2e-7, and what
-/// 2^-24 of the largest product and of the root in `whole` or `after` makes of them where little is left there.
+/// and 1/(1 + bend u), in Q8.24, saturated; line and steepness are positive. Both are within 2e-7, plus the
+/// effect of 2^-24 of the largest product and of the root on `whole` or `after` under cancellation.
 ///
 /// # Scaling and overflow
 /// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has only
@@ -29,12 +29,12 @@ pub(super) fn hyperbola_root(
     let [straight, square, bent, residual] = products.map(|product| word(product, left) >> 3);
     let linear = straight + square - bent;
     let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
-    // linear² + 4 straight bent, as a sum of what is positive.
+    // linear² + 4 straight bent, as a sum of positive terms.
     let difference = straight + bent - square;
     let discriminant = wide(difference, difference) + 4 * wide(straight, square);
     let root = square_root(discriminant.max(1) as u64) as i32;
-    // The root is |difference| at least: neither sum is less but by rounding, where both its parts
-    // are large.
+    // The root is at least |difference|: each sum is smaller only by rounding, and only if both of its
+    // terms are large.
     let whole = (linear + root).max(2 * straight).max(1);
     let after = (whole + 2 * bent).max(2 * square).max(1);
     (ratio(-2 * residual, whole), ratio(whole, after))
@@ -57,7 +57,7 @@ static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
     table
 };
 
-/// What the table takes.
+/// Bytes of the table.
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 

@@ -1,4 +1,4 @@
-//! Kernels in `f64`, from `libm`: they show the error of the scheme alone.
+//! Kernels in `f64`, from `libm`, which show the truncation error alone.
 
 pub(super) fn exp(x: f64) -> f64 {
     libm::exp(x)
@@ -24,7 +24,7 @@ pub(super) fn weibull(x: f64) -> (f64, f64) {
     (-libm::expm1(-power), power * left)
 }
 
-/// e^-e^5 is 1e-64: nothing beside 1, and a larger power might overflow.
+/// e^-e^5 is 1e-64, negligible next to 1; a larger power might overflow.
 const MOST: f64 = 5.0;
 
 pub(crate) fn square_root(x: f64) -> f64 {

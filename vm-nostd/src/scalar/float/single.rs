@@ -1,9 +1,9 @@
-//! Kernels in `f32`: short polynomials, and cubic pieces from tables made when the crate is
-//! compiled. Their bounds are asserted over their whole domains.
+//! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. Their bounds are
+//! asserted over their whole domains.
 
 use crate::scalar::series;
 
-/// 1.5 × 2^23: added to a number below 2^22, it leaves the nearest whole number in the last bits.
+/// 1.5 × 2^23: adding it to a number below 2^22 rounds that to a whole number in the last bits.
 const ROUNDING: f32 = 12_582_912.0;
 /// ln 2 in two parts, of which the first has few bits.
 const LN_2_HIGH: f32 = 0.693_359_4;
@@ -18,7 +18,7 @@ pub(super) fn exp(x: f32) -> f32 {
     let shifted = x * core::f32::consts::LOG2_E + ROUNDING;
     let twos = shifted - ROUNDING;
     let r = (x - twos * LN_2_HIGH) - twos * LN_2_LOW;
-    // Minimax for (e^r - 1 - r)/r² on |r| <= ln 2/2, in halves that do not wait for each other.
+    // Minimax for (e^r - 1 - r)/r² on |r| <= ln 2/2, in two independent halves.
     let square = r * r;
     let series = (0.499_991_47 + r * 0.166_664_59) + square * (0.041_898_31 + r * 0.008_374_51);
     let mantissa = 1.0 + (r + square * series);
@@ -102,7 +102,7 @@ const fn hermite(length: f64, start: (f64, f64), end: (f64, f64)) -> [f32; 4] {
     [a as f32, b as f32, (3.0 * rise - 2.0 * b - last) as f32, (b + last - 2.0 * rise) as f32]
 }
 
-/// Pieces of a table: as many as take one instruction to stay among.
+/// Pieces of a table: a power of two, so that one instruction masks the index.
 const PIECES: usize = 128;
 
 /// Value of a function in pieces, and its slope by pieces, at `place` pieces from the start of the
@@ -138,11 +138,11 @@ static SOFTPLUS: [[f32; 4]; PIECES] = {
 
 /// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within 2e-5.
 ///
-/// Far below 0 it is e^x: what balances two such forces, in a muscle that rests slack, is their
-/// ratio.
+/// Far below 0 it is e^x with relative accuracy: the equilibrium of two such forces in a slack muscle depends
+/// on their ratio.
 #[inline(always)]
 pub(super) fn softplus(x: f32) -> (f32, f32) {
-    // The two tails differ by x.
+    // Both tails are equal apart from x.
     let place = (-SOFTPLUS_LEAST as f32 - x.abs()) * SOFTPLUS_PER_UNIT as f32;
     if place < 0.0 {
         let power = exp(x);
