@@ -1,4 +1,4 @@
-//! The half of the stimulator that the tick drives: supervision, and what may be put out until the next one.
+//! The tick's half of the stimulator: supervision and the plan of pulses.
 
 use crate::gate::Gate;
 use crate::guarded::Guarded;
@@ -15,13 +15,13 @@ pub struct Controller<'q> {
     scale: Guarded<Scale>,
     plans: Giver<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
-    /// What the pulse timer has last been told.
+    /// Last plan given to the pulse timer.
     told: Plan<CHANNELS>,
 }
 
 impl<'q> Controller<'q> {
-    /// Off, with a fault of [`Supervisor::new`] to be acknowledged; for a tick of so many µs. Refused if the limits
-    /// are not those of a stimulator of that tick and scale: see [`Limits::validate`].
+    /// Disarmed, with a latched fault (see [`Supervisor::new`]), for a tick time in µs. An error if the limits do not
+    /// fit tick and scale, see [`Limits::validate`].
     pub fn new(
         limits: Limits,
         tick_us: u32,
@@ -39,12 +39,12 @@ impl<'q> Controller<'q> {
         })
     }
 
-    /// What supervision allows; none once memory has lost a bit of it.
+    /// Limits; none if their checksum failed.
     pub fn limits(&self) -> Option<&Limits> {
         self.supervisor.limits()
     }
 
-    /// Where supervision is.
+    /// State of supervision.
     pub fn state(&self) -> State {
         self.supervisor.state()
     }
@@ -54,12 +54,12 @@ impl<'q> Controller<'q> {
         self.supervisor.wrong()
     }
 
-    /// Whether the host was heard of since this was asked last.
+    /// Whether the host was heard since the last call.
     pub(crate) fn take_heard(&self) -> bool {
         self.gate.take_heard()
     }
 
-    /// See [`Supervisor::acknowledge`]. What was late before does not count any more.
+    /// See [`Supervisor::acknowledge`]. Clears earlier late ticks.
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         self.supervisor.acknowledge(seen)?;
         self.gate.set_late(false);
@@ -72,21 +72,21 @@ impl<'q> Controller<'q> {
         self.supervisor.arm()
     }
 
-    /// Latches a fault, or a stop, at once. The pulse timer's interrupt is to be called for then.
+    /// Latches a fault or a stop at once. The pulse timer's interrupt must be triggered then.
     pub fn fail(&mut self, fault: Fault) {
         self.supervisor.fail(fault);
         self.told = Plan::NOTHING;
         self.gate.set_open(self.state() == State::Armed);
     }
 
-    /// What memory does to a scale.
+    /// A flipped bit in the scale, for tests.
     #[cfg(test)]
     pub(crate) fn corrupt_scale(&mut self) {
         self.scale.corrupt(|scale| scale.full_scale_ua /= 2);
     }
 
-    /// The hard tick. Where stimulation is not allowed it returns false, and the pulse timer's interrupt is to be
-    /// called for: everything is neutral when that has passed.
+    /// The hard tick. Returns false if stimulation is not allowed; the pulse timer's interrupt must then be triggered
+    /// and makes everything neutral.
     #[must_use]
     pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
         let scale = self.scale.get().copied();
@@ -100,21 +100,21 @@ impl<'q> Controller<'q> {
         };
         self.supervisor.tick(&observed, requested);
         if self.state() == State::Armed {
-            // Before there is a plan: a pulse timer that finds the gate shut throws away what it was told.
+            // Before the plan: a pulse timer that finds the gate closed discards its plans.
             self.gate.renew();
             self.gate.set_open(true);
             self.tell(requested, scale);
         }
         let armed = self.state() == State::Armed;
         if !armed {
-            // The pulse timer forgets it, too.
+            // The pulse timer discards it, too.
             self.told = Plan::NOTHING;
             self.gate.set_open(false);
         }
         armed
     }
 
-    /// Tells the pulse timer what is wanted, if that is something else than before.
+    /// Sends a plan to the pulse timer if it has changed.
     fn tell(&mut self, requested: &Requested, scale: Option<Scale>) {
         let (Some(scale), Some(limits)) = (scale, self.supervisor.limits()) else {
             return self.supervisor.fail(Fault::Checksum);
@@ -122,7 +122,7 @@ impl<'q> Controller<'q> {
         match Plan::new(&requested.stimuli, &scale, limits) {
             Err(_) => self.supervisor.fail(Fault::Request),
             Ok(plan) if plan == self.told => (),
-            // The pulse timer takes several in a tick; it has stopped if there is no room.
+            // The pulse timer takes several per tick; a full queue means that it has stopped.
             Ok(plan) if self.plans.enqueue(Guarded::new(plan)).is_err() => {
                 self.supervisor.fail(Fault::Output);
             }

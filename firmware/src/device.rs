@@ -1,4 +1,4 @@
-//! What the hard tick does: a bank of muscles, what stimulates them, and supervision.
+//! The hard tick: muscles, their stimulation, and supervision.
 
 use crate::configuration::{MUSCLES, TICK_US};
 use crate::controller::Controller;
@@ -10,7 +10,7 @@ use crate::lines::{Order, Outcome, Stimuli, TickEnds};
 use crate::link::{Readings, Report, RowOutputs, Traced};
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested};
 
-/// What asks for current, and how long ago it came.
+/// Requests for current, with their age.
 #[derive(Clone, Copy, Debug)]
 struct Aged<T> {
     value: Guarded<T>,
@@ -30,21 +30,21 @@ impl<T: Sum> Aged<T> {
 const NO_STIMULI: Stimuli = [None; CHANNELS];
 const NO_DEMAND: [Demand; MUSCLES] = [Demand::Nothing; MUSCLES];
 
-/// All that the hard tick owns.
+/// State of the hard tick.
 pub struct Device<'q> {
     controller: Controller<'q>,
     ends: TickEnds<'q>,
     deadline: Deadline,
-    /// What was asked for by itself, of channels that no electrode of a muscle has.
+    /// Drives: stimuli of channels without an electrode.
     drive: Aged<Stimuli>,
-    /// What the last row asks for, of channels that electrodes of muscles have.
+    /// Stimuli of the last row, of channels with an electrode.
     demand: Aged<[Demand; MUSCLES]>,
     readings: Readings,
-    /// How long ago these came, µs.
+    /// Age of the readings, µs.
     readings_age_us: u64,
-    /// They came for this tick.
+    /// New readings in this tick.
     readings_are_new: bool,
-    /// A row was not what the link had put into its queue.
+    /// A row's checksum failed.
     row_lost: bool,
     was_armed: bool,
     /// The last tick was in time.
@@ -54,7 +54,7 @@ pub struct Device<'q> {
 }
 
 impl<'q> Device<'q> {
-    /// Without muscles, and without readings of any sensor.
+    /// Without muscles and readings.
     pub fn new(controller: Controller<'q>, ends: TickEnds<'q>, deadline: Deadline) -> Self {
         Self {
             controller,
@@ -73,10 +73,10 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// A tick, which began so many counts of its timer after it was due. False where current must not flow: the
-    /// pulse timer's interrupt is to be called for before anything else is done.
+    /// A tick that began `since_due` counts of its timer after it was due. Returns false if no current may flow: the
+    /// pulse timer's interrupt must be triggered first.
     ///
-    /// Bounded and free of waiting. Deadline: the next tick, for what [`finish`](Self::finish) says included.
+    /// Bounded, without waiting. Deadline, including [`finish`](Self::finish): the next tick.
     #[must_use]
     pub fn tick(&mut self, since_due: u32) -> bool {
         self.deadline.begin(since_due);
@@ -103,12 +103,12 @@ impl<'q> Device<'q> {
             host_heard: self.controller.take_heard(),
             impedance_ohm: self.readings.impedance_ohm,
             supply_mv: self.readings.supply_mv,
-            // Old news is none.
+            // Too old: missing.
             path_um: self.readings.path_um.filter(|_| self.readings_age_us <= readings_us),
             path_is_new: core::mem::take(&mut self.readings_are_new),
             in_time: self.in_time,
             memory_is_intact,
-            // The controller knows.
+            // The controller latches it.
             output_answers: true,
         };
         let armed = self.controller.tick(&observed, &requested.unwrap_or(Requested::NOTHING));
@@ -116,8 +116,7 @@ impl<'q> Device<'q> {
         armed
     }
 
-    /// Forgets what was asked for while nothing could be put out, once it is as old as the limits allow: whoever
-    /// arms is not given what somebody asked for long ago.
+    /// Discards requests that expire while disarmed, so that arming does not start old ones.
     fn expire(&mut self, limits: &Limits) {
         if self.drive.age_us > u64::from(limits.drives_ms) * 1000 {
             self.drive = Aged::new(NO_STIMULI);
@@ -127,14 +126,14 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// Forgets, if it was armed and is not any more.
+    /// Discards requests if it was armed and is no longer.
     fn ended(&mut self, armed: bool) {
         if core::mem::replace(&mut self.was_armed, armed) && !armed {
             self.forget();
         }
     }
 
-    /// What is asked of all channels; none if memory has lost a bit of it.
+    /// Stimuli of all channels; none if a checksum failed.
     fn requested(&self) -> Option<Requested> {
         let drive = self.drive.value.get()?;
         let demands = self.demand.value.get()?;
@@ -149,7 +148,7 @@ impl<'q> Device<'q> {
                     if stimulus.amplitude_ua > 0 {
                         requested.row_age_us = self.demand.age_us;
                     }
-                    // No drive has a channel of an electrode.
+                    // Drives never have a channel of an electrode.
                     *requested.stimuli.get_mut(channel)? = Some(stimulus);
                 }
                 Demand::NotFinite => requested.is_finite = false,
@@ -158,8 +157,8 @@ impl<'q> Device<'q> {
         Some(requested)
     }
 
-    /// What was asked for before a fault is not what whoever arms next asks for. Rows that waited are gone, and
-    /// missing among the traces by their numbers.
+    /// Discards requests and waiting rows after a fault: arming must not resume them. Discarded rows are missing
+    /// among the traces.
     fn forget(&mut self) {
         self.forget_requests();
         while self.ends.rows.dequeue().is_some() {
@@ -172,8 +171,8 @@ impl<'q> Device<'q> {
         self.demand = Aged::new(NO_DEMAND);
     }
 
-    /// The tick ends, so many counts of its timer after it was due or, if that is so, after the next one was.
-    /// False where current must not flow, as with [`tick`](Self::tick).
+    /// The tick ends, `since_due` counts of its timer after it was due, or after the next tick was due if so. Returns
+    /// false if no current may flow, as [`tick`](Self::tick).
     #[must_use]
     pub fn finish(&mut self, since_due: u32, next_is_due: bool) -> bool {
         self.in_time = self.deadline.end(since_due, next_is_due);
@@ -184,9 +183,9 @@ impl<'q> Device<'q> {
         self.in_time
     }
 
-    /// Does what the link asked for last, if anything.
+    /// Executes the link's order, if there is one.
     fn obey(&mut self) {
-        // With no room for its outcome, an order waits; the link takes one before it gives another.
+        // Without room for its outcome an order waits; the link takes an outcome before it gives an order.
         if self.ends.outcomes.ready()
             && let Some(order) = self.ends.orders.dequeue()
         {
@@ -203,14 +202,14 @@ impl<'q> Device<'q> {
                 {
                     *muscle = loaded;
                 }
-                // Electrodes may have other channels now.
+                // Electrodes may have changed channels.
                 self.forget_requests();
                 Outcome::Took(bank)
             }
             Order::Rest(bank) => {
                 let before = core::mem::replace(&mut self.ends.muscles, bank);
                 self.rows = 0;
-                // What waited belongs to the time before.
+                // Waiting rows belong to the time before.
                 while self.ends.rows.dequeue().is_some() {}
                 self.demand = Aged::new(NO_DEMAND);
                 Outcome::Took(before)
@@ -229,7 +228,7 @@ impl<'q> Device<'q> {
             Order::Arm => armed(self.controller.arm()),
             Order::Stop => {
                 self.controller.fail(Fault::Stopped);
-                // Rows are forgotten at the tick's end if it was armed: muscles that only compute go on.
+                // Rows are discarded at the tick's end if it was armed; unarmed muscles continue.
                 self.forget_requests();
                 Outcome::Done
             }
@@ -240,7 +239,7 @@ impl<'q> Device<'q> {
                 rows: self.rows,
                 longest_us: self.deadline.longest_us(),
                 late: self.deadline.late(),
-                // The link knows.
+                // The link reports it.
                 frames: Default::default(),
             }),
             Order::Words(place) => match self.ends.muscles.get(place) {
@@ -250,8 +249,8 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// Steps the muscles by the next row, if there is one and its outputs can be taken. A row of which memory has
-    /// lost a bit steps nothing.
+    /// Steps the muscles by the next row, if there is one and room for its outputs. A row whose checksum fails steps
+    /// nothing.
     fn advance(&mut self) {
         if !self.ends.traces.ready() {
             return;

@@ -1,4 +1,4 @@
-//! A muscle in its place: what it is, where it is, and what stimulates it.
+//! A muscle in its place: coefficients, state and electrode.
 
 use crate::configuration::TYPES;
 use crate::guarded::Sum;
@@ -17,14 +17,14 @@ mod tests;
 const _: () = assert!(State::<f32, NaturalContinuous, TYPES>::WORDS <= MOST_WORDS);
 const _: () = assert!(State::<f32, IntramuscularFes, TYPES>::WORDS <= MOST_WORDS);
 
-/// What a row asks of a muscle's electrode.
+/// Stimulation that a row requests of a muscle's electrode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Demand {
     /// No pulses.
     Nothing,
     /// Pulses on a channel.
     Pulses(usize, Stimulus),
-    /// An activation or a frequency that is infinite or not a number, which is a fault.
+    /// An activation or a frequency that is not finite: a fault.
     NotFinite,
 }
 
@@ -33,7 +33,7 @@ impl Sum for Demand {
         match self {
             Self::Nothing => checksum.add(0),
             Self::Pulses(channel, stimulus) => {
-                // Channels are few.
+                // There are few channels.
                 checksum.add(1 + *channel as u32);
                 stimulus.sum(checksum);
             }
@@ -42,19 +42,20 @@ impl Sum for Demand {
     }
 }
 
-/// A muscle with its state, what stimulates it, and checksums of all of it as they were left.
-// Copied from place to place: a clone would be made on the stack, field by field.
+/// A muscle with its state, its electrode and the checksums of all of it.
+// Copied in memory: a clone would be built on the stack, field by field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Driven {
     muscle: BankedMuscle<f32, TYPES>,
     electrode: Option<(Electrode, RecruitmentCurve<f32>)>,
     checksums: [u32; 3],
-    /// They were others once. What has lost a bit is not stepped on, or its state would look right again.
+    /// A checksum failed once. Stepping stops then, because a new state would get a valid checksum.
     lost: bool,
 }
 
 impl Driven {
-    /// Builds a muscle at rest on [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path), or refuses with field, value and limit.
+    /// Builds a muscle at rest on [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path); the error has
+    /// field, value and limit.
     pub(crate) fn build(upload: &Upload, step: TimeStep) -> Result<Self, Refusal<'static>> {
         let electrode =
             upload.electrode.map(|electrode| checked(upload.mode, electrode)).transpose()?;
@@ -76,7 +77,7 @@ impl Driven {
         Ok(driven)
     }
 
-    /// Puts it at rest on a path (m), refused where the muscle cannot be; then it stays where it was.
+    /// Puts it at rest on a path (m). An error if the path is out of range; the muscle is unchanged.
     pub(crate) fn rest(&mut self, path_length: f32) -> Result<(), Refusal<'static>> {
         match &mut self.muscle {
             BankedMuscle::Continuous(muscle, state) => *state = muscle.rest(path_length)?,
@@ -86,13 +87,13 @@ impl Driven {
         Ok(())
     }
 
-    /// Whether memory has always held what was left in it.
+    /// Whether no checksum has failed.
     pub(crate) fn check(&mut self) -> bool {
         self.lost |= self.sums() != self.checksums;
         !self.lost
     }
 
-    /// A tick; nothing comes of one that has lost a bit.
+    /// Steps by a tick; none after a failed checksum.
     pub(crate) fn step(&mut self, inputs: &RowInputs) -> RowOutputs {
         if self.lost {
             return RowOutputs::default();
@@ -102,7 +103,7 @@ impl Driven {
             path_length: inputs.path_length,
             stimulation_frequency: inputs.stimulation_frequency,
         });
-        // Coefficients and curve are as they were, or this tick would hide what has happened to them.
+        // Keeps the checksum of coefficients and curve: recomputing it would hide a flipped bit.
         self.checksums[1] = self.muscle.state_checksum();
         RowOutputs {
             force: output.force,
@@ -112,13 +113,12 @@ impl Driven {
         }
     }
 
-    /// The channel that stimulates it, if any.
+    /// Channel of its electrode, if any.
     pub(crate) fn channel(&self) -> Option<u8> {
         self.electrode.as_ref().map(|(electrode, _)| electrode.channel)
     }
 
-    /// What an input asks of the electrode: pulses of the amplitude that recruits as much as the input says, at its
-    /// frequency.
+    /// Stimulation for an input: pulses at its frequency, of the amplitude that recruits its activation.
     pub(crate) fn demand(&self, inputs: &RowInputs) -> Demand {
         let Some((electrode, curve)) = self.electrode.as_ref().filter(|_| !self.lost) else {
             return Demand::Nothing;
@@ -128,9 +128,9 @@ impl Driven {
             return Demand::NotFinite;
         }
         let (milliamperes, _) = curve.amplitude_for(activation, electrode.width_us.into());
-        // Saturating.
+        // `as` saturates.
         let frequency_tenths_pps = (stimulation_frequency * 10.0) as u16;
-        // Below a pulse a second there are none.
+        // No pulses below 1 pps.
         if activation <= 0.0 || frequency_tenths_pps < 10 {
             return Demand::Nothing;
         }
@@ -144,7 +144,7 @@ impl Driven {
         Demand::Pulses(electrode.channel.into(), stimulus)
     }
 
-    /// All words of the state.
+    /// Words of the state.
     pub(crate) fn words(&self) -> Vec<u32, MOST_WORDS> {
         match &self.muscle {
             BankedMuscle::Continuous(_, state) => state.words().take(MOST_WORDS).collect(),
@@ -165,13 +165,13 @@ impl Driven {
     }
 }
 
-/// An electrode that a stimulator can have, with its curve.
+/// A validated electrode with its recruitment curve.
 fn checked(
     mode: Mode,
     electrode: Electrode,
 ) -> Result<(Electrode, RecruitmentCurve<f32>), Refusal<'static>> {
     if mode != Mode::Fes {
-        // Natural recruitment is not to be stimulated as well.
+        // Only FES muscles have electrodes.
         let channel = electrode.channel.into();
         return Err(Refusal::Number {
             field: "electrode: only for FES",
@@ -182,7 +182,7 @@ fn checked(
     }
     within("electrode.channel", electrode.channel.into(), 0, CHANNELS as u32 - 1)?;
     let curve = RecruitmentCurve::build(&electrode.curve)?;
-    // The rest as with any stimulus, of which amplitude and frequency come with each row.
+    // Validates the rest as a stimulus; amplitude and frequency come with each row.
     let Electrode { width_us, gap_us, recovery, .. } = electrode;
     Stimulus { amplitude_ua: 0, width_us, gap_us, frequency_tenths_pps: 10, recovery }
         .validate_shape()?;

@@ -1,61 +1,60 @@
-//! Flash that a controller writes, as its manual (RM0090, 3.6) and its data sheet (DS8626) have it.
+//! Flash behind its controller (RM0090 3.6, DS8626).
 //!
-//! Flags of an earlier error are cleared before anything is begun, for with one of them set the next operation
-//! fails, too. Each wait ends. What was erased or written is not read from a cache.
+//! Error flags are cleared before an operation, which fails otherwise. Every wait is bounded. Caches are flushed after
+//! erasing and writing.
 
 use crate::watchdog::MOST_CHANGE_MS;
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Erasing a sector of 128 KB, ms: 2,000 typically, 4,000 at most where bytes are written one by one (x8), as any
-/// supply allows and as `stm32f4xx-hal` does.
+/// Longest erase of a sector of 128 KB at x8, ms (2,000 typically). `stm32f4xx-hal` uses x8, which any supply allows.
 pub const MOST_ERASE_MS: u32 = 4_000;
-/// Writing a byte, µs: 16 typically.
+/// Longest write of a byte, µs (16 typically).
 const MOST_WRITE_US: u32 = 100;
-/// From the request to store something until that is done, ms, however little of its time the part leaves.
+/// Longest time to store a content, ms.
 pub const MOST_STORE_MS: u32 =
     MOST_ERASE_MS + (crate::storage::MOST_WRITTEN as u32 * MOST_WRITE_US).div_ceil(1000);
-/// Longest wait until a watchdog is patient, ms: ticks are 2 ms at most.
+/// Longest wait for the watchdog's disarmed timeout, ms.
 const MOST_PATIENCE_MS: u32 = MOST_CHANGE_MS + 10;
 
-/// A controller of flash: its flags, what it does, and a clock.
+/// Flash controller: flags, operations and a clock.
 pub trait FlashController {
-    /// Of its clock in a ms.
+    /// Counts of its clock per ms.
     const COUNTS_PER_MS: u32;
-    /// Bytes.
+    /// Size, bytes.
     const BYTES: usize;
-    /// Bytes that are erased at once.
+    /// Size of a sector, bytes.
     const SECTOR: usize;
 
-    /// What its clock has counted; goes round.
+    /// Its clock, which wraps around.
     fn counts(&self) -> u32;
-    /// Whether a watchdog waits for as long as an erasure takes.
+    /// Whether the watchdog's timeout exceeds an erase.
     fn is_watchdog_patient(&self) -> bool;
-    /// An operation is under way.
+    /// Whether an operation is running.
     fn is_busy(&self) -> bool;
-    /// Any flag of an error is set.
+    /// Whether an error flag is set.
     fn has_error(&self) -> bool;
-    /// Clears all flags of errors, and that of an operation's end.
+    /// Clears the error flags and the end-of-operation flag.
     fn clear_flags(&mut self);
-    /// Erases the sector that begins here. Whether it went well is in the flags, and in this.
+    /// Erases the sector at an address. Success is in the flags and in the result.
     fn erase_sector(&mut self, from: u32) -> bool;
-    /// Writes bytes; the same.
+    /// Writes bytes; as for erasing.
     fn write(&mut self, from: u32, bytes: &[u8]) -> bool;
     /// Reads bytes.
     fn read(&self, from: u32, bytes: &mut [u8]);
-    /// Forgets what caches hold.
+    /// Flushes the caches.
     fn flush_caches(&mut self);
 }
 
-/// Why flash did not do what it was to.
+/// Why an operation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashError {
-    /// Addresses that there are not.
+    /// Address out of range.
     Outside,
-    /// It stays busy for longer than any operation takes, or the watchdog does not become patient.
+    /// It stays busy too long, or the watchdog does not take the disarmed timeout.
     Busy,
-    /// A flag says that the operation failed, or a flag cannot be cleared.
+    /// An error flag is set, or cannot be cleared.
     Failed,
 }
 
@@ -73,7 +72,7 @@ impl NorFlashError for FlashError {
 pub struct Flash<C>(C);
 
 impl<C: FlashController> Flash<C> {
-    /// As the controller has it.
+    /// Takes over a controller.
     pub const fn new(controller: C) -> Self {
         Self(controller)
     }
@@ -83,8 +82,7 @@ impl<C: FlashController> Flash<C> {
         &mut self.0
     }
 
-    /// Whether something comes true within so many ms. A clock that has stopped does not make it wait for ever: a
-    /// look takes a count at least.
+    /// Waits for a condition for at most `ms`. A stopped clock does not block: each poll counts as at least one count.
     fn within(&self, ms: u32, is_so: impl Fn(&C) -> bool) -> Result<(), FlashError> {
         let most = ms.saturating_mul(C::COUNTS_PER_MS);
         let begun = self.0.counts();
@@ -99,7 +97,7 @@ impl<C: FlashController> Flash<C> {
         Err(FlashError::Busy)
     }
 
-    /// Does one thing between flags that are clear.
+    /// Runs one operation with cleared flags.
     fn operate(&mut self, operation: impl FnOnce(&mut C) -> bool) -> Result<(), FlashError> {
         self.within(MOST_PATIENCE_MS, C::is_watchdog_patient)?;
         self.within(MOST_ERASE_MS, |controller| !controller.is_busy())?;

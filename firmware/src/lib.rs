@@ -1,10 +1,10 @@
-//! The stimulator controller's logic, free of any chip: testable on a host.
+//! Logic of the stimulator, independent of the chip and testable on a host.
 //!
-//! Three things run, each above the next and never waiting for it:
+//! Three levels, each of which interrupts the next and never waits for it:
 //!
-//! 1. the pulse timer: [`Pulses`] puts out what [`Schedule`] says is due, for as long as the tick allows it;
-//! 2. the hard tick: [`Device`] steps the muscles and supervises the stimulator;
-//! 3. the link: [`Server`] takes what a host asks for, and gives back what the muscles do.
+//! 1. pulse timer: [`Pulses`] outputs the pulse that is due in [`Schedule`], while the tick permits it;
+//! 2. hard tick: [`Device`] steps the muscles and supervises;
+//! 3. link: [`Server`] takes a host's requests and returns the muscles' outputs.
 //!
 //! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues of [`Lines`].
 #![no_std]

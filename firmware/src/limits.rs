@@ -1,10 +1,9 @@
-//! What a stimulator may put out, how old its inputs may be, and how long it may go on.
+//! Limits of output, of the age of inputs, and of the duration of stimulation.
 //!
-//! What shaped the values: IEC 60601-2-10:2012, for stimulators in physical medicine, allows into 500 Ω at most
-//! 300 mJ per pulse and, up to 400 Hz, 50 mA r.m.s.; and asks for particular care above 2 mA r.m.s. per cm² of
-//! electrode. This is no claim of conformity, which nobody can make for a module; and equipment with implanted
-//! electrodes, as in intramuscular FES, is outside of that standard: its limits come from the charge per phase
-//! that the electrode in question bears.
+//! The values follow IEC 60601-2-10:2012 for stimulators in physical medicine: at most 300 mJ per pulse into 500 Ω,
+//! 50 mA r.m.s. up to 400 Hz, and particular care above 2 mA r.m.s. per cm² of electrode. This is no claim of
+//! conformity, which a module cannot have. Implanted electrodes, as in intramuscular FES, are outside that standard:
+//! their limit is the charge per phase that the electrode bears.
 
 use crate::guarded::Sum;
 use crate::stimulus::{
@@ -18,21 +17,21 @@ pub(crate) const SHORTEST_TICK_US: u32 = 500;
 /// The longest tick, µs.
 pub(crate) const LONGEST_TICK_US: u32 = 2000;
 
-/// What is allowed; everything else is a fault. Validated when a supervisor is built.
+/// Limits whose violation is a fault. Validated when a supervisor is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Amplitude, µA; 1 to the full scale of the current source.
     pub amplitude_ua: u32,
-    /// Width of the phase that stimulates, µs; 20 to 1,000.
+    /// Width of the stimulating phase, µs; 20 to 1,000.
     pub width_us: u16,
-    /// Pulses in ten seconds; 10 to 5,000.
+    /// Frequency, pulses in ten seconds; 10 to 5,000.
     pub frequency_tenths_pps: u16,
-    /// Charge of a phase, nC; 1 to that of the greatest amplitude and width.
+    /// Charge per phase, nC; 1 to that of the greatest amplitude and width.
     pub charge_nc: u32,
     /// Root mean square of a channel's current, µA; 1 to `amplitude_ua`.
     pub rms_ua: u32,
-    /// How much the amplitude that is put out may rise from one pulse of a channel to the next, µA; from eight steps
-    /// of the current source to `amplitude_ua`. Faster demands are slowed down, and are no fault.
+    /// Greatest rise of amplitude from one pulse of a channel to the next, µA; eight steps of the current source to
+    /// `amplitude_ua`. Faster requests are slowed down, without a fault.
     pub rise_ua: u32,
     /// Longest stimulation without a rest, ms; a tick or more. Stopping and arming again does not reset it.
     pub session_ms: u32,
@@ -42,35 +41,34 @@ pub struct Limits {
     pub silence_ms: u32,
     /// Greatest age of a reading of the path, ms; a tick or more. An older one counts as missing, which is a fault.
     pub readings_ms: u32,
-    /// Greatest age of a row whose stimulus is put out, ms; a tick or more.
+    /// Greatest age of a row that stimulates, ms; a tick or more.
     pub rows_ms: u32,
-    /// Greatest age of a drive whose stimulus is put out, ms; a tick or more. Hosts repeat them.
+    /// Greatest age of a drive, ms; a tick or more. Hosts repeat drives.
     pub drives_ms: u32,
-    /// Of each electrode that stimulates and was measured, Ω: below is a short, above an electrode that has come
-    /// off. Measuring takes pulses, so that one that was not measured yet is let pass.
+    /// Impedance of each electrode that stimulates, Ω: below is a short, above an open electrode. An electrode that was
+    /// not measured yet is allowed, because measuring takes pulses.
     pub impedance_ohm: (u32, u32),
     /// Supply, mV.
     pub supply_mv: (u32, u32),
     /// Path length of the muscle, µm.
     pub path_um: (i32, i32),
-    /// Greatest speed of the path from one reading to the next, mm/s; 1 or more. The time between two readings is that
-    /// between the ticks that they came in, and a µm is always allowed.
+    /// Greatest speed of the path from one reading to the next, mm/s; 1 or more. Time is counted between the ticks of
+    /// the readings, and a change of 1 µm is always allowed.
     pub path_speed_mm_s: u32,
-    /// Longest time that a reading may stay the same to the µm, ms of stimulation; a tick to `session_ms`. A sensor
-    /// has noise.
+    /// Longest stimulation with a constant reading (to the µm), ms; a tick to `session_ms`. A working sensor has noise.
     pub stuck_ms: u32,
 }
 
-/// A limit was refused: its value contradicts the stimulator or another limit.
+/// A refused limit: its value contradicts the stimulator or another limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LimitError {
-    /// The field, by its name; of a pair, its lower end.
+    /// Name of the field; of a pair, its lower end.
     pub field: &'static str,
     /// The refused value, in the field's unit.
     pub value: i64,
-    /// The least that is taken.
+    /// Least allowed value.
     pub least: i64,
-    /// The most that is taken.
+    /// Greatest allowed value.
     pub most: i64,
 }
 
@@ -106,7 +104,7 @@ impl Limits {
         stuck_ms: 2_000,
     };
 
-    /// The smaller of these limits and what a current source of that scale can put out.
+    /// The smaller of these limits and those of a current source.
     #[must_use]
     pub const fn within_scale(mut self, scale: &Scale) -> Self {
         self.amplitude_ua = least(self.amplitude_ua, scale.full_scale_ua);
@@ -116,12 +114,12 @@ impl Limits {
         self
     }
 
-    /// Whether a stimulator of that tick (µs) and scale can keep these limits, and none of them is contradicted by
-    /// another one; the error names the field, its value and the limit it broke.
+    /// Validates the limits for a tick time (µs) and scale, and against each other; the error has field, value and
+    /// limit.
     pub const fn validate(&self, tick_us: u32, scale: &Scale) -> Result<(), LimitError> {
         let amplitude = self.amplitude_ua as i64;
         let tick_ms = tick_us.div_ceil(1000) as i64;
-        // What a pulse's amplitude is rounded by: with less it would never rise.
+        // Rounding of a pulse's amplitude: a smaller rise would never raise it.
         let coarsest = (MOST_RECOVERY as u64 * scale.full_scale_ua as u64)
             .div_ceil(scale.counts() as u64) as i64;
         let ever = u32::MAX as i64;

@@ -1,4 +1,4 @@
-//! What tick and link give each other: queues, and two banks of muscles. Neither ever waits for the other.
+//! Queues between tick and link, and two banks of muscles. Neither waits for the other.
 
 use crate::configuration::MUSCLES;
 use crate::driven::Driven;
@@ -11,19 +11,18 @@ use heapless::Vec;
 use heapless::spsc::Queue;
 use vm_nostd::Checksum;
 
-/// Places for rows that wait for their tick, and for their outputs; a queue keeps one of them free.
+/// Capacity of the queues of rows and of traces; a queue keeps one place free.
 const WAITING: usize = 64;
 
-/// The muscles of all places. There are two that tick and link give each other, for a muscle is too large for a queue,
-/// and for the stack.
+/// Muscles of all places. Tick and link exchange two banks: a muscle is too large for a queue and for the stack.
 pub(crate) type Bank = [Option<Driven>; MUSCLES];
 
-/// What the link asks of the tick.
+/// An order from link to tick.
 #[derive(Debug)]
 pub(crate) enum Order {
-    /// A place's muscle, of a bank that has it there.
+    /// Load the muscle of a place from a bank.
     Load(usize, &'static mut Bank),
-    /// All muscles of places that have one, at rest; rows count from 0.
+    /// Replace all muscles by those at rest in a bank; rows count from 0.
     Rest(&'static mut Bank),
     Drive(Guarded<Stimuli>),
     Readings(Readings),
@@ -34,11 +33,11 @@ pub(crate) enum Order {
     Words(usize),
 }
 
-/// What the tick answers: one outcome for each order.
+/// Answer of the tick: one outcome per order.
 #[derive(Debug)]
 pub(crate) enum Outcome {
     Done,
-    /// The same, with a bank that the tick does not need.
+    /// Done; returns the bank that the tick does not need.
     Took(&'static mut Bank),
     NotArmed(NotArmed),
     Report(Report),
@@ -49,7 +48,7 @@ pub(crate) enum Outcome {
 /// Inputs of each muscle in a tick.
 pub(crate) type Row = [RowInputs; MUSCLES];
 
-/// What is asked of each channel.
+/// Stimulus of each channel.
 pub(crate) type Stimuli = [Option<Stimulus>; CHANNELS];
 
 impl Sum for RowInputs {
@@ -60,7 +59,7 @@ impl Sum for RowInputs {
     }
 }
 
-/// Everything that goes between tick and link; neither ever waits for the other.
+/// All queues between tick and link.
 pub struct Lines {
     orders: Queue<Order, 2>,
     outcomes: Queue<Outcome, 2>,
@@ -68,7 +67,7 @@ pub struct Lines {
     traces: Queue<Traced, WAITING>,
 }
 
-/// Room for the muscles of the tick, and for those that the link gives it next: large, and never moved.
+/// Memory of the tick's bank and the spare one: large, never moved.
 pub struct Banks {
     muscles: Bank,
     spare: Bank,
@@ -104,7 +103,7 @@ impl Lines {
         }
     }
 
-    /// The tick's ends and the link's, which give each other two banks of muscles.
+    /// Splits into the tick's ends and the link's.
     pub fn split(&mut self, banks: &'static mut Banks) -> (TickEnds<'_>, LinkEnds<'_>) {
         let (give_order, take_order) = self.orders.split();
         let (give_outcome, take_outcome) = self.outcomes.split();
@@ -144,6 +143,6 @@ pub struct LinkEnds<'q> {
     pub(crate) outcomes: Taker<'q, Outcome>,
     pub(crate) rows: Giver<'q, Guarded<Row>>,
     pub(crate) traces: Taker<'q, Traced>,
-    /// None while the tick has it.
+    /// The spare bank; none while the tick has it.
     pub(crate) spare: Option<&'static mut Bank>,
 }

@@ -1,4 +1,4 @@
-//! What all channels do together, checked before the pulse timer has anything to do with it.
+//! Plan of all channels, validated before the pulse timer gets it.
 
 use crate::guarded::{Guarded, Sum};
 use crate::limits::{Limits, SHORTEST_TICK_US};
@@ -9,34 +9,34 @@ use crate::waveform::Pulse;
 use heapless::spsc::Queue;
 use vm_nostd::Checksum;
 
-/// Share of the time that pulses of all channels may take, thousandths: what is left makes up for waiting.
+/// Largest share of time for pulses of all channels, thousandths; the rest lets late pulses catch up.
 const MOST_LOAD: u32 = 900;
 
-/// Plans on their way from the tick to the pulse timer.
+/// Queue of plans from tick to pulse timer.
 pub type PlanQueue = Queue<Guarded<Plan<CHANNELS>>, PLAN_QUEUE>;
 
-/// Places of that queue. The pulse timer reads it at the start of each step without current, so that for the longest
-/// pulse, and the step before it, no plan is read while each tick may bring one. A queue keeps one place free.
+/// Capacity of that queue: one plan per tick during the longest pulse and the step before it, when the pulse timer does
+/// not read it. A queue keeps one place free.
 const PLAN_QUEUE: usize = {
     let unread_us = LONGEST_PULSE_US + Step::LONGEST_US;
     unread_us.div_ceil(SHORTEST_TICK_US) as usize + 2
 };
 
-/// The pulse train of a channel, of a stimulus that was validated.
+/// Pulse train of a validated stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Train {
-    /// Of the phase that stimulates: what was asked for.
+    /// Requested counts of the stimulating phase.
     counts: u16,
-    /// Of that phase, µs.
+    /// Width of that phase, µs.
     pub(crate) width_us: u16,
     gap_us: u16,
     recovery: u8,
-    /// From the start of a pulse to that of the next, µs.
+    /// Period, µs.
     pub(crate) period_us: u32,
 }
 
 impl Train {
-    /// A pulse of it, of at most so many counts.
+    /// A pulse of the train, of at most `most` counts.
     pub(crate) fn pulse(&self, most: u16) -> Pulse {
         Pulse::of(self.counts.min(most), self.width_us, self.gap_us, self.recovery)
     }
@@ -51,13 +51,13 @@ impl Sum for Train {
     }
 }
 
-/// What all channels do; nothing in it can be refused any more.
+/// Validated plan of all channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan<const CHANNELS: usize> {
     pub(crate) trains: [Option<Train>; CHANNELS],
-    /// How many counts an amplitude may rise by from one pulse of a channel to the next.
+    /// Greatest rise from one pulse of a channel to the next, counts.
     pub(crate) rise: u16,
-    /// No pulse of a channel comes sooner after the one before, µs, also where it makes up for waiting.
+    /// Least time between pulses of a channel, µs, also when catching up.
     pub(crate) least_period_us: u32,
 }
 
@@ -65,14 +65,13 @@ impl<const CHANNELS: usize> Plan<CHANNELS> {
     /// No pulses on any channel.
     pub const NOTHING: Self = Self { trains: [None; CHANNELS], rise: 0, least_period_us: 0 };
 
-    /// Whether no channel has a train.
+    /// Whether it has no pulse train.
     pub(crate) fn is_nothing(&self) -> bool {
         self.trains.iter().all(Option::is_none)
     }
 
-    /// The plan of what is wanted of each channel, whose amplitudes rise, and whose pulses follow each other, no
-    /// faster than the limits say. Refused with field, value and limit if the stimulator cannot do one of them, or
-    /// not all of them one at a time.
+    /// The plan of each channel's stimulus, with rise and frequency within the limits. The error has field, value and
+    /// limit, if the stimulator cannot do one of them or not all of them one at a time.
     pub fn new(
         wanted: &[Option<Stimulus>; CHANNELS],
         scale: &Scale,

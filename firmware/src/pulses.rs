@@ -1,4 +1,4 @@
-//! The half of the stimulator that the pulse timer drives, above everything else.
+//! The pulse timer's half of the stimulator, at the highest priority.
 
 use crate::gate::Gate;
 use crate::guarded::Guarded;
@@ -14,38 +14,37 @@ use heapless::spsc::Consumer;
 #[cfg(test)]
 mod tests;
 
-/// Puts pulses out, as long as the tick keeps allowing it.
+/// Outputs pulses while the tick permits it.
 pub struct Pulses<'q, D, P> {
     stage: OutputStage<D, P, CHANNELS>,
     schedule: Schedule<CHANNELS>,
     plans: Taker<'q, Guarded<Plan<CHANNELS>>>,
     gate: &'q Gate,
-    /// For how long a tick's permission holds, µs.
+    /// Duration of a tick's permission, µs.
     patience_us: u32,
-    /// The most time since the last one, µs.
+    /// Longest possible time since the last permission, µs.
     age_us: u32,
-    /// A pulse is being put out.
+    /// A pulse is running.
     pulsing: bool,
-    /// How long the step lasts, or lasted, that the timer's last interrupt began, µs.
+    /// Duration of the current step, µs.
     lasted_us: u32,
-    /// What the timer's next interrupt begins.
+    /// Step of the timer's next interrupt.
     next: Step,
-    /// For how long electrodes of a pulse that was cut short stay connected to each other, µs; none if there are
-    /// no such.
+    /// Remaining discharge of a pulse that was cut short, µs; none without one.
     discharge_us: Option<u32>,
 }
 
-/// So long: ten time constants of 1 µF and 2 kΩ.
+/// Duration of a discharge: ten time constants of 1 µF and 2 kΩ.
 const DISCHARGE_US: u32 = 20_000;
 
-/// Ticks that a permission holds for: each tick gives one, but for one that hangs.
+/// Duration of a permission in ticks; each tick renews it.
 const PATIENCE_TICKS: u32 = 2;
 
 impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
-    /// How long the first step lasts, µs.
+    /// Duration of the first step, µs.
     pub const FIRST_US: u32 = Step::IDLE.duration_us;
 
-    /// Takes over the output stage, in neutral, for a tick of so many µs.
+    /// Takes over the output stage, in neutral, for a tick time in µs.
     pub fn new(
         stage: OutputStage<D, P, CHANNELS>,
         plans: Consumer<'q, Guarded<Plan<CHANNELS>>>,
@@ -68,17 +67,16 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// The timer has run out and counts the next step already: puts that out, and returns how long the step
-    /// *after* it lasts, µs. That goes into the timer's buffer, so that the hardware, not this function, says when
-    /// a phase ends.
+    /// The timer has expired and already counts the next step: outputs that step and returns the duration of the step
+    /// *after* it, µs, for the timer's buffer. The hardware, not this function, ends a phase.
     ///
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
-        // A permission that is seen now came at any time of the step that has just ended.
+        // The permission may have come at any time in the step that has just ended.
         let before_us = if self.gate.take_renewed() { 0 } else { self.age_us };
         self.age_us = before_us.saturating_add(self.lasted_us);
         self.lasted_us = self.next.duration_us;
-        // Before the step begins: one that would last for longer than the permission does not.
+        // A step that would outlast the permission does not begin.
         let ends_us = self.age_us.saturating_add(self.next.duration_us);
         let is_overdue = ends_us > self.patience_us && !self.schedule.is_idle();
         if is_overdue {
@@ -93,7 +91,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             self.fail();
         }
         self.flow_off(&step);
-        // Plans are long to read, and to sum: not while a phase is being timed.
+        // Reading and checking plans takes long: not while a phase is being timed.
         if step.output.is_none() {
             self.read_plans();
         }
@@ -105,7 +103,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         self.next.duration_us
     }
 
-    /// Follows the plans that wait. What memory has changed puts nothing out.
+    /// Takes over waiting plans. A plan whose checksum fails outputs nothing.
     fn read_plans(&mut self) {
         while let Some(plan) = self.plans.dequeue() {
             self.schedule.follow(&plan);
@@ -119,7 +117,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// The tick has something to say that cannot wait.
+    /// Urgent interrupt of the tick.
     pub fn attend(&mut self) {
         if !self.gate.is_open() {
             self.halt();
@@ -138,8 +136,8 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// The timer ran out again before its interrupt was through: in a pulse, a phase does not last as long as it
-    /// should. Between pulses it may.
+    /// The timer expired again before its interrupt had finished: a phase of a pulse is too long. Between pulses that is
+    /// allowed.
     pub fn overran(&mut self) {
         if self.pulsing {
             self.gate.set_late(true);
@@ -152,7 +150,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         self.gate.set_output_failed(true);
     }
 
-    /// No current, and nothing comes after it.
+    /// No current, and no further pulse.
     fn halt(&mut self) {
         self.schedule.halt();
         // The timer counts what it was told, whatever is put out.

@@ -1,10 +1,10 @@
-//! A memory that forgets, for where there is no flash: an emulator, a test.
+//! Volatile memory in place of flash, for QEMU and tests.
 
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Bytes of RAM that behave as flash does.
+/// RAM that behaves like flash.
 #[derive(Clone, Debug)]
 pub struct RamFlash<const BYTES: usize>([u8; BYTES]);
 
@@ -27,7 +27,7 @@ impl<const BYTES: usize> RamFlash<BYTES> {
     }
 }
 
-/// Addresses that there are not.
+/// Address out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outside;
 

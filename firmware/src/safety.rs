@@ -1,8 +1,8 @@
-//! Whether stimulation may go on: limits, inputs that must make sense, and faults that stay until somebody has
-//! seen them. One pass per tick, in integers, without generics.
+//! Supervision: limits, plausibility of inputs, and latched faults. One pass per tick, in integers, without
+//! generics.
 //!
-//! Everything is off at boot. A fault latches: somebody has to name it ([`Supervisor::acknowledge`]), and then arm
-//! ([`Supervisor::arm`]) within ten seconds and with the cause gone.
+//! Everything is off at boot. A fault latches until it is acknowledged by name ([`Supervisor::acknowledge`]) and the
+//! stimulator is armed ([`Supervisor::arm`]) within ten seconds, with the cause gone.
 
 pub use crate::fault::Fault;
 use crate::guarded::Guarded;
@@ -11,115 +11,115 @@ use crate::limits::Limits;
 use crate::stimulus::{Scale, Stimulus};
 use serde::{Deserialize, Serialize};
 
-/// Channels that are supervised together.
+/// Number of channels.
 pub const CHANNELS: usize = 4;
 
-/// What a tick sees.
+/// Observations of a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
-    /// The host was heard of since the last tick.
+    /// The host was heard since the last tick.
     pub host_heard: bool,
-    /// Ω of every channel; none where it was not measured yet.
+    /// Impedance of every channel, Ω; none if not measured yet.
     pub impedance_ohm: [Option<u32>; CHANNELS],
-    /// mV.
+    /// Supply, mV.
     pub supply_mv: u32,
-    /// Path length, µm; none if the sensor gave no number, or none lately.
+    /// Path length, µm; none without a recent valid reading.
     pub path_um: Option<i32>,
-    /// It was read since the last tick, also where it says the same as before.
+    /// It is a new reading, even if its value is unchanged.
     pub path_is_new: bool,
     /// The last tick began and finished in time.
     pub in_time: bool,
-    /// State and parameters are what the last tick left.
+    /// Checksums of state and parameters are valid.
     pub memory_is_intact: bool,
     /// The output stage has answered.
     pub output_answers: bool,
 }
 
-/// What a tick is asked to put out, and how old that is.
+/// Requested stimuli of a tick, with their age.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Requested {
-    /// Of each channel.
+    /// Stimulus of each channel.
     pub stimuli: [Option<Stimulus>; CHANNELS],
-    /// Age of the row that a stimulus comes from, µs; 0 if none does.
+    /// Age of the stimulating row, µs; 0 without one.
     pub row_age_us: u64,
-    /// Age of the drive that a stimulus comes from, µs; 0 if none does.
+    /// Age of the drive in force, µs; 0 without one.
     pub drive_age_us: u64,
-    /// Activation and frequency of the rows are finite numbers.
+    /// Activation and frequency of the rows are finite.
     pub is_finite: bool,
 }
 
 impl Requested {
-    /// Nothing on any channel.
+    /// No stimulus on any channel.
     pub const NOTHING: Self =
         Self { stimuli: [None; CHANNELS], row_age_us: 0, drive_age_us: 0, is_finite: true };
 
-    /// Of the pulse trains with current, µs; 0 without any.
+    /// Longest period of the pulse trains with current, µs; 0 without one.
     fn longest_period_us(&self) -> u32 {
         let trains = self.stimuli.iter().flatten().filter(|stimulus| stimulus.amplitude_ua > 0);
         trains.map(Stimulus::period_us).max().unwrap_or(0)
     }
 
-    /// Whether current is asked for.
+    /// Whether current is requested.
     fn stimulates(&self) -> bool {
         self.stimuli.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0)
     }
 }
 
-/// Where the two steps of arming are.
+/// State of arming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
-    /// Off because of the fault, until somebody names it.
+    /// Off, until the fault is acknowledged.
     Latched(Fault),
-    /// Off; the fault has been named, and arming may follow.
+    /// Off; the fault is acknowledged, and arming may follow.
     Acknowledged {
-        /// Time that is left for arming, µs.
+        /// Remaining time for arming, µs.
         left_us: u32,
-        /// The fault that comes back when they are over.
+        /// The fault that latches again after that.
         fault: Fault,
     },
-    /// Stimulation is allowed.
+    /// Armed: stimulation is allowed.
     Armed,
 }
 
 /// Why arming was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotArmed {
-    /// No fault of that name is latched.
+    /// Another fault is latched.
     OtherFault,
-    /// The fault has to be acknowledged first.
+    /// No fault is acknowledged.
     NotAcknowledged,
-    /// The cause is still there.
+    /// The cause is still present.
     StillThere(Fault),
 }
 
-/// From acknowledging to arming, µs.
+/// Longest time from acknowledging to arming, µs.
 const ARMING_US: u32 = 10_000_000;
 
-/// Supervises stimulation. Times are µs in 64 bits: they do not end.
+/// Supervises stimulation. Times are µs in 64 bits and do not overflow.
 #[derive(Clone, Debug)]
 pub struct Supervisor {
     limits: Guarded<Limits>,
     tick_us: u32,
     state: State,
-    /// What was wrong with the inputs of the last tick, if anything.
+    /// Fault of the last tick's observations, if any.
     wrong: Option<Fault>,
     silence_us: u64,
-    /// Until the pulse after the last that was asked for would be due: pauses within a pulse train are no pauses.
+    /// Time until the requested train's next pulse: the time between pulses of a train is no pause.
     train_us: u32,
-    /// Of stimulation since the last rest.
+    /// Stimulation since the last rest.
     session_us: u64,
-    /// Without stimulation.
+    /// Pause of stimulation.
     rest_us: u64,
-    /// Of stimulation while the reading stayed the same.
+    /// Stimulation with a constant reading.
     stuck_us: u64,
     path_before: Option<i32>,
-    /// Since that was read.
+    /// Time since the last reading.
     path_age_us: u64,
 }
 
 impl Supervisor {
-    /// Off, as at every boot, and latched: with [`Fault::Boot`], or [`Fault::Watchdog`] if that is why it boots.
-    /// For a tick of so many µs and a current source of that scale; see [`Limits::validate`] for what is refused.
+    /// Off and latched with [`Fault::Boot`], or [`Fault::Watchdog`] after a restart by the watchdog, for a tick time in
+    /// µs and a current source. For errors see [`Limits::validate`].
     pub fn new(
         limits: Limits,
         tick_us: u32,
@@ -142,22 +142,22 @@ impl Supervisor {
         })
     }
 
-    /// What is allowed; none once memory has lost a bit of it.
+    /// Limits; none if their checksum failed.
     pub fn limits(&self) -> Option<&Limits> {
         self.limits.get()
     }
 
-    /// Where it is.
+    /// State of arming.
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// What was wrong with the inputs of the last tick, if anything.
+    /// Fault of the last tick's observations, if any.
     pub fn wrong(&self) -> Option<Fault> {
         self.wrong
     }
 
-    /// First step: somebody has seen the fault, and says which.
+    /// First step of arming: acknowledges the latched fault by name.
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         match self.state {
             State::Latched(fault) | State::Acknowledged { fault, .. } if fault == seen => {
@@ -168,8 +168,8 @@ impl Supervisor {
         }
     }
 
-    /// Second step: stimulation may begin, from nothing, if the last tick saw nothing wrong and the session is not
-    /// over. What was put out before still counts.
+    /// Second step of arming: allowed if the last tick had no fault and the session is not over. Earlier output still
+    /// counts.
     pub fn arm(&mut self) -> Result<(), NotArmed> {
         let State::Acknowledged { .. } = self.state else { return Err(NotArmed::NotAcknowledged) };
         if let Some(fault) = self.wrong {
@@ -185,10 +185,10 @@ impl Supervisor {
         Ok(())
     }
 
-    /// One tick: whether what is requested may be put out until the next one, all of it, or nothing.
+    /// One tick: whether all requested stimuli may be put out until the next tick.
     pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
         let stimulates = requested.stimulates() || self.train_us > 0;
-        // A limit that memory has lost allows nothing.
+        // A limit whose checksum fails allows nothing.
         let limits = self.limits.get().copied();
         self.wrong = match &limits {
             Some(limits) => self.wrong_with(limits, observed, requested, stimulates),
@@ -222,7 +222,7 @@ impl Supervisor {
         is_armed
     }
 
-    /// A session goes on through pauses, stops and faults; only a rest ends it.
+    /// A session continues through pauses, stops and faults; only a rest ends it.
     fn count_session(&mut self, limits: Option<&Limits>, stimulates: bool) {
         let tick_us = u64::from(self.tick_us);
         if stimulates {
@@ -238,14 +238,14 @@ impl Supervisor {
         self.session_us >= micros(limits.session_ms)
     }
 
-    /// Latches a fault that somebody else has found, unless one is latched already.
+    /// Latches a fault, unless one is latched already.
     pub fn fail(&mut self, fault: Fault) {
         if !matches!(self.state, State::Latched(_)) {
             self.state = State::Latched(fault);
         }
     }
 
-    /// What is wrong with what a tick sees; what is worst first.
+    /// First fault of a tick's observations, most severe first.
     fn wrong_with(
         &mut self,
         limits: &Limits,
@@ -275,17 +275,17 @@ impl Supervisor {
     ) -> Option<Fault> {
         self.path_age_us = self.path_age_us.saturating_add(self.tick_us.into());
         let Some(path) = observed.path_um else { return Some(Fault::SensorMissing) };
-        // The first number there is moves from nowhere.
+        // The first reading has no speed.
         let moved = self.path_before.map_or(1, |before| path.abs_diff(before));
         self.path_before = Some(path);
-        // mm/s times µs are nm. A µm is the least that a reading can tell.
+        // mm/s times µs is nm. A reading resolves 1 µm.
         let most_moved =
             u64::from(limits.path_speed_mm_s).saturating_mul(self.path_age_us).max(1000);
         if observed.path_is_new || moved > 0 {
             self.path_age_us = 0;
         }
         let (least, most) = limits.path_um;
-        // Pauses of stimulation do not count, and do not make a sensor work.
+        // Pauses of stimulation neither count nor reset it.
         if moved > 0 || stimulates {
             count(&mut self.stuck_us, moved == 0, self.tick_us);
         }
@@ -300,7 +300,7 @@ impl Supervisor {
         }
     }
 
-    /// What is wrong with a request, with its age, and with how long requests have gone on.
+    /// First fault of a request, of its age, and of the session.
     fn wrong_request(&self, limits: &Limits, requested: &Requested) -> Option<Fault> {
         if self.is_session_over(limits) {
             return Some(Fault::Session);
@@ -333,17 +333,17 @@ impl Supervisor {
     }
 }
 
-/// Exact for every limit.
+/// ms to µs, exact for every limit.
 fn micros(limit_ms: u32) -> u64 {
     u64::from(limit_ms) * 1000
 }
 
-/// Counts µs as long as something goes on.
+/// Adds µs while a condition holds; else 0.
 fn count(total_us: &mut u64, goes_on: bool, tick_us: u32) {
     *total_us = if goes_on { total_us.saturating_add(tick_us.into()) } else { 0 };
 }
 
-/// Below or above a range: false or true.
+/// Outside a range: below is false, above true.
 fn outside(value: u32, (least, most): (u32, u32)) -> Option<bool> {
     if value < least {
         Some(false)
@@ -354,7 +354,7 @@ fn outside(value: u32, (least, most): (u32, u32)) -> Option<bool> {
     }
 }
 
-/// The first electrode that stimulates and does not look like one.
+/// First stimulating electrode with an impedance out of range.
 fn wrong_electrode(
     observed: &Observed,
     requested: &[Option<Stimulus>; CHANNELS],
@@ -367,13 +367,13 @@ fn wrong_electrode(
     })
 }
 
-/// Charge of a phase, nC, rounded up: µA times µs are thousandths of it.
+/// Charge of a phase, nC, rounded up, from µA times µs in pC.
 fn charge_nc(stimulus: &Stimulus) -> u64 {
     (u64::from(stimulus.amplitude_ua) * u64::from(stimulus.width_us)).div_ceil(1000)
 }
 
-/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, for the phase that takes the charge back is k times
-/// weaker and longer. Saturated, and amplitudes beyond 1 A taken as that: no limit is there.
+/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, with a recharge phase that is k times weaker and longer.
+/// Saturates; amplitudes count up to 1 A, above every limit.
 fn mean_square(stimulus: &Stimulus) -> u64 {
     let amplitude = u64::from(stimulus.amplitude_ua.min(1_000_000));
     let recovery = u64::from(stimulus.recovery.max(1));

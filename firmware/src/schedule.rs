@@ -1,12 +1,11 @@
-//! Which channel's pulse comes when: one at a time, the one that is due first, none cut short.
+//! Schedule of pulses: one at a time, earliest due first, none cut short.
 //!
-//! Driven by a hardware timer: [`Schedule::advance`] says what to put out and when to be called again. A pulse that
-//! is due while another is running starts when that has ended: it waits for at most one pulse of every other channel.
-//! The one after it is due as if it had not been late, but never closer than half a period, nor than the limit on
-//! frequencies allows.
+//! [`Schedule::advance`] returns the next step and its duration for a hardware timer. A pulse that is due while another
+//! runs starts after it: it waits for at most one pulse of every other channel. The next pulse is due as if the last
+//! had been on time, but no closer than half a period or than the frequency limit allows.
 //!
-//! An amplitude rises from nothing, and by no more from one pulse of a channel to the next than the plan says. What
-//! counts is what was put out: how often, and how, a host asks makes no difference.
+//! Amplitudes rise from zero, by at most the plan's rise per pulse. Only pulses that were put out count, not how often
+//! a host asks.
 
 use crate::guarded::Guarded;
 use crate::limits::SHORTEST_TICK_US;
@@ -14,44 +13,42 @@ use crate::plan::{Plan, Train};
 use crate::stimulus::LEAST_PHASE_US;
 use crate::waveform::{Phase, Pulse};
 
-/// What the output stage is to do until the next call.
+/// Output until the next call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// The channel and its current; none between pulses.
     pub output: Option<(usize, Phase)>,
-    /// How long, µs; [`LEAST_PHASE_US`] to [`Step::LONGEST_US`].
+    /// Duration, µs; [`LEAST_PHASE_US`] to [`Step::LONGEST_US`].
     pub duration_us: u32,
 }
 
 impl Step {
-    /// No step is longer, µs: a quarter of the shortest tick. At its end, whoever drives the schedule looks for what has
-    /// changed, and whether the tick still allows current.
+    /// Longest step, µs: a quarter of the shortest tick. After each step plans and permission are checked.
     pub const LONGEST_US: u32 = SHORTEST_TICK_US / 4;
     /// Nothing for a while.
     pub const IDLE: Self = Self { output: None, duration_us: Self::LONGEST_US };
 }
 
-/// What a channel has put out, which outlasts every halt: off and on again is no way round a frequency.
+/// Pulse history of a channel. It outlasts a halt, so that switching off and on cannot exceed the frequency.
 #[derive(Clone, Copy, Debug)]
 struct Rhythm {
-    /// From now until the next pulse may come, µs; negative once it may.
+    /// Time until the next pulse may come, µs; negative when it may.
     due_us: i32,
     /// The period that `due_us` counts down, µs.
     period_us: i32,
-    /// Since the last pulse began, µs.
+    /// Time since the last pulse began, µs.
     since_us: i32,
-    /// Counts of the last pulse; none of a channel that has been off since.
+    /// Counts of the last pulse; 0 after the channel was off.
     counts: u16,
     /// Width of the last pulse, µs.
     width_us: u16,
 }
 
 impl Rhythm {
-    /// Without a pulse: due at once, whatever the period.
+    /// Without a pulse: due at once.
     const NONE: Self = Self { due_us: 0, period_us: 0, since_us: i32::MAX, counts: 0, width_us: 0 };
 
-    /// The most counts of a next pulse of that width. Charge stimulates: a pulse that becomes wider becomes weaker
-    /// first.
+    /// Most counts of the next pulse of a width. A wider pulse starts weaker, because charge stimulates.
     fn reach(&self, rise: u16, width_us: u16) -> u16 {
         let counts = if width_us > self.width_us {
             let charge = u32::from(self.counts) * u32::from(self.width_us);
@@ -64,24 +61,24 @@ impl Rhythm {
     }
 }
 
-/// A pulse on its way.
+/// A running pulse.
 #[derive(Clone, Copy, Debug)]
 struct Running {
     channel: usize,
-    /// As it was when it began.
+    /// The pulse as it began.
     pulse: Pulse,
-    /// Index of the phase that comes, and what is left of it, µs.
+    /// Index of the next phase, and its remaining time, µs.
     phase: usize,
     left_us: u32,
 }
 
-/// The pulses of all channels.
+/// Schedule of all channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule<const CHANNELS: usize> {
     plan: Guarded<Plan<CHANNELS>>,
     rhythms: [Rhythm; CHANNELS],
     running: Option<Running>,
-    /// A pulse has ended, and nothing is put out for the shortest of steps: there is a time for new plans.
+    /// A pulse has ended: one shortest step without current follows, in which plans are read.
     rests: bool,
 }
 
@@ -92,7 +89,7 @@ impl<const CHANNELS: usize> Default for Schedule<CHANNELS> {
 }
 
 impl<const CHANNELS: usize> Schedule<CHANNELS> {
-    /// No channel does anything.
+    /// An idle schedule.
     pub fn new() -> Self {
         Self {
             plan: Guarded::new(Plan::NOTHING),
@@ -102,16 +99,16 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         }
     }
 
-    /// Follows another plan from each channel's next pulse on. A pulse that is running ends as it began.
+    /// Follows a new plan from the next pulse of each channel on; a running pulse is not changed.
     pub fn follow(&mut self, plan: &Guarded<Plan<CHANNELS>>) {
-        // One that memory has changed stays as it is, and starts nothing.
+        // A plan whose checksum fails stays, and starts nothing.
         if let (Some(new), Some(old)) = (plan.get(), self.plan.get()) {
             let trains = new.trains.iter().zip(&old.trains);
             for (rhythm, (train, before)) in self.rhythms.iter_mut().zip(trains) {
                 match train {
                     None => rhythm.counts = 0,
-                    // A rhythm goes on. Of another one, a pulse comes no sooner after the last than its own period
-                    // says, or strong and rare pulses could take the places of weak and frequent ones.
+                    // An unchanged train continues. A pulse of a new train comes no sooner after the last
+                    // than its own period: else strong, rare pulses could follow weak, frequent ones.
                     Some(Train { period_us, .. }) => {
                         // Periods are ten seconds at most.
                         let period_us = *period_us as i32;
@@ -126,12 +123,12 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         self.plan = *plan;
     }
 
-    /// Whether memory holds the plan as it was made.
+    /// Whether the plan's checksum is valid.
     pub fn is_intact(&self) -> bool {
         self.plan.get().is_some()
     }
 
-    /// Stops every channel, the pulse that is running as well: what is put out next is nothing.
+    /// Stops every channel at once, also a running pulse.
     pub fn halt(&mut self) {
         self.plan = Guarded::new(Plan::NOTHING);
         self.rhythms.iter_mut().for_each(|rhythm| rhythm.counts = 0);
@@ -139,17 +136,17 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         self.rests = false;
     }
 
-    /// Whether nothing will come by itself.
+    /// Whether no pulse will come.
     pub fn is_idle(&self) -> bool {
         self.running.is_none() && self.plan.get().is_none_or(Plan::is_nothing)
     }
 
-    /// Nothing for a while, whatever is due: in place of [`Schedule::advance`].
+    /// A step without current instead of [`Schedule::advance`].
     pub(crate) fn wait(&mut self) -> Step {
         self.pass(Step::IDLE)
     }
 
-    /// What is put out now, and for how long. To be called when the last step has lasted as long as it said.
+    /// The next step. Call it when the last step has ended.
     pub fn advance(&mut self) -> Step {
         let step = match self.phase() {
             Some(step) => {
@@ -178,7 +175,7 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         step
     }
 
-    /// What is left of the pulse that is running.
+    /// Next step of the running pulse.
     fn phase(&mut self) -> Option<Step> {
         let mut running = self.running.take()?;
         while let Some(&phase) = running.pulse.phases.get(running.phase) {
@@ -201,7 +198,7 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         None
     }
 
-    /// The first phase of the pulse that is due first, or nothing until one is.
+    /// First phase of the pulse that is due first, or a step without current.
     fn start(&mut self) -> Step {
         let Some(plan) = self.plan.get() else { return Step::IDLE };
         let mut first: Option<(usize, &Train, &mut Rhythm)> = None;
@@ -215,8 +212,8 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         match first {
             Some((channel, train, rhythm)) if rhythm.due_us <= 0 => {
                 let pulse = train.pulse(rhythm.reach(plan.rise, train.width_us));
-                // What was late makes up for it in part: two pulses are never closer than half a period, nor than
-                // the greatest frequency has them.
+                // A late pulse is made up for in part: pulses are never closer than half a period, or than
+                // the frequency limit allows.
                 let period_us = train.period_us as i32;
                 let closest_us = (period_us / 2).max(plan.least_period_us as i32);
                 rhythm.due_us = (rhythm.due_us + period_us).max(closest_us);
@@ -227,7 +224,7 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
                 self.running = Some(Running { channel, pulse, phase: 0, left_us });
                 self.phase().unwrap_or(Step::IDLE)
             }
-            // Not exactly when it is due, if that is very soon: a step has its shortest length.
+            // May be later than due by less than the shortest step.
             Some((_, _, rhythm)) => {
                 let due_us = rhythm.due_us.unsigned_abs();
                 let duration_us = due_us.clamp(LEAST_PHASE_US, Step::LONGEST_US);

@@ -1,4 +1,4 @@
-//! The device's end of the link: below the tick, in no hurry.
+//! The device's end of the link, at the lowest priority.
 
 use crate::configuration::{MUSCLES, TYPES};
 use crate::gate::Gate;
@@ -17,18 +17,18 @@ use embedded_storage::nor_flash::MultiwriteNorFlash;
 use heapless::{Deque, Vec};
 use vm_nostd::TimeStep;
 
-/// For the outcome of an order.
+/// Recipient of an order's outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Waiting {
-    /// There was none.
+    /// No order is pending.
     No,
-    /// The order at boot, which nobody has asked for.
+    /// The order at boot, without a request.
     Boot,
-    /// A request of that sequence number.
+    /// The request of a sequence number.
     Request(u16),
 }
 
-/// What a [`Server`] has of memory: it is large, and built where it stays.
+/// Memory of a [`Server`]: large, built in place.
 pub struct ServerRoom {
     receiver: Receiver,
     stored: SlotBuffer,
@@ -37,7 +37,7 @@ pub struct ServerRoom {
     out: Out,
 }
 
-/// Bytes for the host, an answer and a message of traces at most.
+/// Bytes for the host: at most an answer and a message of traces.
 type Out = Deque<u8, { 2 * MOST_FRAME }>;
 
 impl Default for ServerRoom {
@@ -59,7 +59,7 @@ impl ServerRoom {
     }
 }
 
-/// Takes bytes, gives bytes, and tells the tick what it is to do.
+/// Receives and sends bytes and gives orders to the tick.
 pub struct Server<'q, F, R> {
     receiver: &'q mut Receiver,
     session: Session,
@@ -68,17 +68,17 @@ pub struct Server<'q, F, R> {
     uploads: Uploads<'q, F>,
     step: TimeStep,
     waiting: Waiting,
-    /// Number of the row that is due.
+    /// Number of the next row.
     row: u32,
     sequence: u16,
-    /// How often this was looked after, for a source of randomness that has nothing else.
+    /// Polls since boot, for randomness without a generator.
     polls: u32,
     randomness: R,
     out: &'q mut Out,
 }
 
 impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
-    /// Takes over what is stored, and gives the tick the muscles that are whole and can be built.
+    /// Restores the stored muscles and gives them to the tick.
     pub fn new(
         room: &'q mut ServerRoom,
         ends: LinkEnds<'q>,
@@ -109,7 +109,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         server
     }
 
-    /// Gives the memory back.
+    /// Returns the memory.
     pub fn into_memory(self) -> F {
         self.uploads.into_memory()
     }
@@ -119,7 +119,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         self.gate.is_open()
     }
 
-    /// Whether a byte can be taken: not before the request before it is answered.
+    /// Whether it can take a byte: not before the last request is answered.
     pub fn is_ready(&self) -> bool {
         self.waiting == Waiting::No && self.has_room()
     }
@@ -147,12 +147,12 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         }
     }
 
-    /// Bytes were lost on the line, or arrived as none.
+    /// Bytes were lost or damaged on the line.
     pub fn lost(&mut self) {
         self.receiver.lost();
     }
 
-    /// Looks for what the tick has to say.
+    /// Polls the tick.
     pub fn poll(&mut self) {
         self.polls = self.polls.wrapping_add(1);
         if let Some(outcome) = self.ends.outcomes.dequeue() {
@@ -178,17 +178,17 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         self.out.pop_front()
     }
 
-    /// Nothing waits to be said or done.
+    /// Whether nothing is pending.
     pub fn is_idle(&self) -> bool {
         self.out.is_empty() && self.waiting == Waiting::No && !self.ends.traces.ready()
     }
 
-    /// For any frame.
+    /// Sends a message.
     fn has_room(&self) -> bool {
         self.out.capacity() - self.out.len() >= MOST_FRAME
     }
 
-    /// Does what a request asks for: the answer, or none where that comes from the tick.
+    /// Executes a request; returns the answer, or none if the tick gives it.
     fn act(
         &mut self,
         sequence: u16,
@@ -219,14 +219,14 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         Ok(None)
     }
 
-    /// There is room: the outcome of the order before was taken.
+    /// Gives an order; there is room, since the last outcome was taken.
     fn give(&mut self, order: Order) {
         if let Err(Order::Load(_, bank) | Order::Rest(bank)) = self.ends.orders.enqueue(order) {
             self.ends.spare = Some(bank);
         }
     }
 
-    // Not inlined, as others below: what one of them has on the stack would be there while another is deep.
+    // Not inlined, like others below: their frames would add up.
     #[inline(never)]
     fn upload(&mut self, place: u8, upload: Upload) -> Result<Order, Refusal<'static>> {
         self.only_disarmed()?;
@@ -237,19 +237,19 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         Ok(Order::Load(index, self.spare()?))
     }
 
-    /// A bank for the tick, with all muscles as they were built.
+    /// The spare bank, filled with all muscles at rest.
     fn spare(&mut self) -> Result<&'static mut Bank, Refusal<'static>> {
         let bank = self.ends.spare.take().ok_or(Refusal::NoRoom { room: 0 })?;
         *bank = *self.uploads.built();
         Ok(bank)
     }
 
-    /// The tick has given it back with the outcome of the order before.
+    /// The spare bank, which the last outcome returned.
     fn only_with_spare(&self) -> Result<(), Refusal<'static>> {
         if self.ends.spare.is_some() { Ok(()) } else { Err(Refusal::NoRoom { room: 0 }) }
     }
 
-    /// Stimuli by themselves are for channels that no electrode of a muscle has.
+    /// Drives are for channels without an electrode.
     fn drive(&mut self, stimuli: Stimuli) -> Result<Order, Refusal<'static>> {
         for (channel, stimulus) in (0..).zip(&stimuli) {
             if stimulus.is_some() {
@@ -279,7 +279,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         within("first", first, self.row, self.row)?;
         let room = self.ends.rows.room();
         if room < rows.len() {
-            // No more than a queue's length.
+            // At most the queue's length.
             return Err(Refusal::NoRoom { room: room as u32 });
         }
         for &row in rows {
@@ -300,7 +300,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
             muscles: MUSCLES as u8,
             types: TYPES as u8,
             channels: CHANNELS as u8,
-            // A step is 2 ms at most.
+            // A tick is at most 2 ms.
             tick_us: (self.step.seconds() * 1e6 + 0.5) as u32,
             restored: self.uploads.restored(),
         }
@@ -340,7 +340,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     }
 }
 
-/// Of the device's random number and the host's; odd, and so never that of no session, and not that of the one before.
+/// Session number from the device's random number and the host's nonce; never 0, and not the last one.
 fn session_number(random: u32, nonce: u32, before: SessionNumber) -> SessionNumber {
     let number = (random ^ nonce) | 1;
     if number == before { number.wrapping_add(2) } else { number }

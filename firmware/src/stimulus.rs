@@ -1,29 +1,28 @@
-//! What a channel is to do, and what a stimulator can.
+//! Stimulus of a channel, and its limits.
 
 use crate::guarded::Sum;
 use core::fmt;
 use serde::{Deserialize, Serialize};
 use vm_nostd::Checksum;
 
-/// Shortest phase, µs: the pulse timer's interrupt that begins it sets how long the next one lasts, and has to be
-/// through by then.
+/// Shortest phase, µs: the pulse timer's interrupt at its start must set the next phase before its end.
 pub const LEAST_PHASE_US: u32 = 20;
 
-/// Without current before anything is switched, and after it, µs: converters and switches have settled by then.
+/// Time without current before and after switching, µs, in which converter and switches settle.
 pub(crate) const SETTLE_US: u16 = LEAST_PHASE_US as u16;
-/// Shortest gap, µs: settling, and turning the bridge.
+/// Shortest interphase gap, µs: settling, and reversing the bridge.
 const LEAST_GAP_US: u32 = 2 * LEAST_PHASE_US;
-/// Widest phase that stimulates, µs.
+/// Widest stimulating phase, µs.
 pub(crate) const MOST_WIDTH_US: u16 = 1000;
-/// Longest gap, µs.
+/// Longest interphase gap, µs.
 const MOST_GAP_US: u32 = 200;
-/// How many times longer the recharge phase may be.
+/// Greatest ratio of recharge to stimulating phase.
 pub(crate) const MOST_RECOVERY: u8 = 8;
 /// The strongest current source, µA.
 pub(crate) const MOST_FULL_SCALE_UA: u32 = 500_000;
-/// The greatest count of the converter that the output stage speaks to.
+/// Greatest count of the converter.
 pub(crate) const MOST_COUNTS: u16 = 4095;
-/// Longest pulse of any legal stimulus, settling included, µs.
+/// Longest pulse of a valid stimulus, with settling, µs.
 pub(crate) const LONGEST_PULSE_US: u32 = Stimulus {
     amplitude_ua: 0,
     width_us: MOST_WIDTH_US,
@@ -33,41 +32,41 @@ pub(crate) const LONGEST_PULSE_US: u32 = Stimulus {
 }
 .duration_us();
 
-/// Pulses of one channel, until it is told otherwise.
+/// Pulse train of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stimulus {
-    /// Of the phase that stimulates, µA; 0 to [`Scale::full_scale_ua`].
+    /// Amplitude of the stimulating phase, µA; 0 to [`Scale::full_scale_ua`].
     pub amplitude_ua: u32,
-    /// Of the phase that stimulates, µs; [`LEAST_PHASE_US`] to 1,000.
+    /// Width of the stimulating phase, µs; [`LEAST_PHASE_US`] to 1,000.
     pub width_us: u16,
-    /// Between the phases, µs; 40 to 200.
+    /// Interphase gap, µs; 40 to 200.
     pub gap_us: u16,
-    /// Pulses in ten seconds; 10 (one a second) to 5,000.
+    /// Frequency, pulses in ten seconds; 10 to 5,000.
     pub frequency_tenths_pps: u16,
-    /// How many times weaker, and longer, the phase is that takes the charge back; 1 to 8.
+    /// The recharge phase is this many times weaker and longer; 1 to 8.
     pub recovery: u8,
 }
 
-/// How the current source turns counts into current.
+/// Scale of the current source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scale {
     /// Current at the greatest count, µA; 1 to 500,000.
     pub full_scale_ua: u32,
-    /// The greatest count; 8 to 4095, which is that of a converter of 12 bits.
+    /// Greatest count; 8 to 4095 (a 12-bit converter).
     pub full_scale_counts: u16,
 }
 
 impl Scale {
-    /// The greatest count; 1 where the scale says none.
+    /// Greatest count, at least 1.
     pub(crate) const fn counts(&self) -> u32 {
         if self.full_scale_counts == 0 { 1 } else { self.full_scale_counts as u32 }
     }
 
-    /// Counts of a current (µA), rounded down; those of full scale for any beyond it.
+    /// Counts of a current (µA), rounded down, clamped to full scale.
     pub(crate) fn counts_of(&self, current_ua: u32) -> u16 {
-        // 64 bits: µA times counts may have 35.
+        // µA times counts may have 35 bits.
         let current = u64::from(current_ua.min(self.full_scale_ua));
-        // No more than the greatest count.
+        // At most the greatest count.
         (current * u64::from(self.counts()) / u64::from(self.full_scale_ua.max(1))) as u16
     }
 }
@@ -89,16 +88,16 @@ impl Sum for Stimulus {
     }
 }
 
-/// A stimulus was refused.
+/// A refused stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StimulusError {
-    /// The field, by its name; `duration_us` is the pulse's, which has to fit into its period.
+    /// Name of the field; `duration_us` is that of the pulse, which must fit into its period.
     pub field: &'static str,
     /// The refused value, in the field's unit.
     pub value: u32,
-    /// The least that is taken.
+    /// Least allowed value.
     pub least: u32,
-    /// The most that is taken.
+    /// Greatest allowed value.
     pub most: u32,
 }
 
@@ -124,26 +123,25 @@ pub(crate) fn within(
     }
 }
 
-/// Of so many pulses in ten seconds, µs; rounded up.
+/// Period of a frequency in pulses per ten seconds, µs; rounded up.
 pub(crate) fn period_us(frequency_tenths_pps: u16) -> u32 {
     10_000_000_u32.div_ceil(frequency_tenths_pps.max(1).into())
 }
 
 impl Stimulus {
-    /// From the start of a pulse to that of the next, µs; rounded up, or there would be a pulse too many in a second.
+    /// Period, µs; rounded up, so that no second has a pulse too many.
     pub fn period_us(&self) -> u32 {
         period_us(self.frequency_tenths_pps)
     }
 
-    /// From the start of a pulse until another may begin, settling included, µs.
+    /// Duration of a pulse with settling, µs.
     pub const fn duration_us(&self) -> u32 {
         let width = self.width_us as u32;
         let settling = 3 * SETTLE_US as u32;
         width + self.gap_us as u32 + width * self.recovery as u32 + settling
     }
 
-    /// Whether a stimulator of that scale can do it; the error names the field, its value and the limit it
-    /// broke.
+    /// Validates the stimulus for a scale; the error has field, value and limit.
     pub fn validate(&self, scale: &Scale) -> Result<(), StimulusError> {
         within("amplitude_ua", self.amplitude_ua, 0, scale.full_scale_ua)?;
         self.validate_shape()?;
@@ -151,7 +149,7 @@ impl Stimulus {
         within("duration_us", self.duration_us(), 0, self.period_us())
     }
 
-    /// The same of what does not change from pulse to pulse: width, gap and recovery.
+    /// Validates width, gap and recovery only.
     pub(crate) fn validate_shape(&self) -> Result<(), StimulusError> {
         within("width_us", self.width_us.into(), LEAST_PHASE_US, MOST_WIDTH_US.into())?;
         within("gap_us", self.gap_us.into(), LEAST_GAP_US, MOST_GAP_US)?;

@@ -1,9 +1,8 @@
-//! What has to outlast a loss of power: two slots, of which one is always whole.
+//! Non-volatile storage in two slots, of which one is always intact.
 //!
-//! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases the slot that
-//! does not count, writes its content and then its header; only that makes it the newer one. Wherever power is
-//! lost, the slot that counted before still does. Whatever fails on the way, a slot that is not known to hold what it
-//! should is made not to count before an error is returned.
+//! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases the older slot,
+//! writes its content and then its header, which makes it the newer one. If power is lost on the way, the other slot
+//! stays valid. After an error, a slot that may not hold its content is invalidated.
 
 use crate::link::VERSION;
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -15,30 +14,30 @@ pub const MOST_STORED: usize = 2048;
 const HEADER: usize = 16;
 /// Of a slot.
 const MOST_SLOT: usize = HEADER + MOST_STORED;
-/// Bytes that storing writes at most: a slot, and another header where that fails.
+/// Most bytes that storing writes: a slot, and another header after an error.
 pub(crate) const MOST_WRITTEN: usize = MOST_SLOT + HEADER;
-/// Whose it is, and of which messages: other versions lay a muscle out in another way.
+/// Magic number with the protocol's version, on which the layout depends.
 const MAGIC: u32 = 0x4D53_4D00 + VERSION as u32;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// Why memory did not take or keep a content.
+/// Why a content was not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotStored {
     /// It is longer than [`MOST_STORED`].
     TooLong,
-    /// What is stored could not be read: nothing was erased.
+    /// Reading failed; nothing was erased.
     Read,
-    /// The slot for it was not erased.
+    /// Erasing failed.
     Erase,
-    /// It was not written.
+    /// Writing failed.
     Write,
-    /// It was written, and is not what is read.
+    /// Verification failed: it reads back differently.
     Kept,
-    /// Memory failed more than once: what the next boot restores may be this or what was stored before.
+    /// Memory failed more than once: the next boot may restore this content or the one before.
     Unknown,
 }
 
-/// A slot that is whole.
+/// An intact slot.
 #[derive(Clone, Copy, Debug)]
 struct Whole {
     slot: u32,
@@ -46,10 +45,10 @@ struct Whole {
     length: usize,
 }
 
-/// What a slot is read to and written from.
+/// Buffer of a slot.
 pub type SlotBuffer = [u8; MOST_SLOT];
 
-/// Two slots in a memory of two equal halves, each of whole pages of it.
+/// Two slots in the halves of a memory, each of whole pages.
 #[derive(Debug)]
 pub struct Slots<'b, F> {
     memory: F,
@@ -57,31 +56,31 @@ pub struct Slots<'b, F> {
 }
 
 impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
-    /// Takes over a memory, as it is.
+    /// Takes over a memory with its contents.
     pub fn new(memory: F, buffer: &'b mut SlotBuffer) -> Self {
         Self { memory, buffer }
     }
 
-    /// Gives the memory back.
+    /// Returns the memory.
     pub fn into_memory(self) -> F {
         self.memory
     }
 
-    /// What was stored last, if anything.
+    /// The content stored last, if any.
     pub fn load(&mut self) -> Option<&[u8]> {
         let Whole { slot, length, .. } = self.newest().ok()??;
-        // Both were in the buffer; it may hold the other one.
+        // The buffer may hold the other slot.
         self.whole(slot).ok()??;
         self.buffer.get(HEADER..HEADER + length)
     }
 
-    /// Stores a content; what was stored before counts until this is whole, and after an error still does, unless that
-    /// is [`NotStored::Unknown`].
+    /// Stores a content. Until it is complete, and after an error other than [`NotStored::Unknown`], the content before
+    /// stays valid.
     pub fn store(&mut self, content: &[u8]) -> Result<(), NotStored> {
         if content.len() > MOST_STORED {
             return Err(NotStored::TooLong);
         }
-        // A memory that cannot be read may hold a content that counts.
+        // An unreadable memory may hold a valid content.
         let newest = self.newest()?;
         let (slot, generation) =
             newest.map_or((0, 0), |newest| (1 - newest.slot, newest.generation.wrapping_add(1)));
@@ -90,7 +89,7 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
         let place =
             self.buffer.get_mut(HEADER..HEADER + content.len()).ok_or(NotStored::TooLong)?;
         place.copy_from_slice(content);
-        // No longer than the buffer.
+        // Fits the buffer.
         let length = content.len() as u32;
         let fields = [MAGIC, generation, length];
         for (place, field) in self.buffer.chunks_exact_mut(4).zip(fields) {
@@ -106,12 +105,12 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
         self.memory.erase(start, start + self.half()).map_err(|_| NotStored::Erase)?;
         let written = self.buffer.get(HEADER..HEADER + padded).ok_or(NotStored::TooLong)?;
         self.memory.write(start + HEADER as u32, written).map_err(|_| NotStored::Write)?;
-        // With its header it counts.
+        // The header makes it valid.
         self.seal(start, slot, generation, content)
             .map_err(|error| if self.unseal(start, slot) { error } else { NotStored::Unknown })
     }
 
-    /// Writes the header, and reads everything again: a worn page may keep something else.
+    /// Writes the header and verifies everything, because a worn page may fail.
     fn seal(
         &mut self,
         start: u32,
@@ -126,7 +125,7 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
         if kept.generation == generation && same { Ok(()) } else { Err(NotStored::Kept) }
     }
 
-    /// Clears every bit of a header. Whether it is known that the slot does not count.
+    /// Invalidates a slot by clearing its header. Whether that is certain.
     fn unseal(&mut self, start: u32, slot: u32) -> bool {
         let _what_is_read_decides = self.memory.write(start, &[0; HEADER]);
         matches!(self.whole(slot), Ok(None))
@@ -140,7 +139,7 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
     fn newest(&mut self) -> Result<Option<Whole>, NotStored> {
         Ok(match (self.whole(0)?, self.whole(1)?) {
             (Some(first), Some(second)) => {
-                // Generations go round.
+                // Generations wrap around.
                 let ahead = second.generation.wrapping_sub(first.generation);
                 Some(if ahead < 0x8000_0000 { second } else { first })
             }
@@ -148,7 +147,7 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
         })
     }
 
-    /// Reads a slot into the buffer, and says what it holds if it is whole.
+    /// Reads a slot into the buffer; its description if it is intact.
     fn whole(&mut self, slot: u32) -> Result<Option<Whole>, NotStored> {
         self.memory.read(slot * self.half(), self.buffer).map_err(|_| NotStored::Read)?;
         let mut fields = [0; 4];
@@ -162,7 +161,7 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
     }
 }
 
-/// Of the header's first three fields and a content of so many bytes; none if that is too long.
+/// Checksum of the header's first three fields and the content; none if that is too long.
 fn checksum(slot: &[u8], length: usize) -> Option<u32> {
     let mut digest = CRC.digest();
     digest.update(slot.get(..12)?);

@@ -1,4 +1,4 @@
-//! What hosts have uploaded: checked, stored, and built. What is restored at boot passes the checks of an upload.
+//! Uploaded muscles: validated, stored and built. Restored uploads are validated like new ones.
 
 use crate::configuration::MUSCLES;
 use crate::driven::Driven;
@@ -8,10 +8,10 @@ use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use vm_nostd::TimeStep;
 
-/// What outlasts a loss of power.
+/// Contents of non-volatile memory.
 pub(crate) type Stored = [Option<Upload>; MUSCLES];
 
-/// The uploads of all places, and the muscles that were built of them.
+/// Uploads of all places and their muscles.
 pub(crate) struct Uploads<'q, F> {
     slots: Slots<'q, F>,
     step: TimeStep,
@@ -21,7 +21,7 @@ pub(crate) struct Uploads<'q, F> {
 }
 
 impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
-    /// Takes over what is stored. What could not be uploaded now is left out, and not stored again.
+    /// Restores the stored uploads. Those that are invalid are left out and not stored again.
     pub(crate) fn restore(
         memory: F,
         buffer: &'q mut SlotBuffer,
@@ -40,7 +40,7 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         restored
     }
 
-    /// Builds what was stored for a place, if it can be.
+    /// Builds the stored upload of a place, if it is valid.
     fn build(&mut self, index: usize) {
         let driven = self
             .uploads
@@ -59,22 +59,22 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         }
     }
 
-    /// Gives the memory back.
+    /// Returns the memory.
     pub(crate) fn into_memory(self) -> F {
         self.slots.into_memory()
     }
 
-    /// All muscles as they were built.
+    /// All muscles, at rest.
     pub(crate) fn built(&self) -> &Bank {
         self.built
     }
 
-    /// Places that had a muscle in memory at boot.
+    /// Places restored at boot.
     pub(crate) fn restored(&self) -> u8 {
         self.restored
     }
 
-    /// Checks an upload for a place, stores it, and builds it.
+    /// Validates, stores and builds an upload for a place.
     pub(crate) fn take(&mut self, index: usize, upload: Upload) -> Result<(), Refusal<'static>> {
         let driven = self.checked(index, &upload)?;
         self.store(index, &Some(upload))?;
@@ -85,7 +85,7 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         Ok(())
     }
 
-    /// The muscle of an upload for a place, refused if there is none or its channel is taken.
+    /// Builds the muscle of an upload for a place; an error if it is invalid or its channel is taken.
     fn checked(&self, index: usize, upload: &Upload) -> Result<Driven, Refusal<'static>> {
         let driven = Driven::build(upload, self.step)?;
         if let Some(channel) = driven.channel() {
@@ -94,8 +94,8 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         Ok(driven)
     }
 
-    /// Stores what is stored, with another upload at a place.
-    // Not inlined: what it has on the stack would be there while building is deep.
+    /// Stores all uploads with a new one at a place.
+    // Not inlined: its frame would add to that of building.
     #[inline(never)]
     fn store(&mut self, index: usize, upload: &Option<Upload>) -> Result<(), Refusal<'static>> {
         let mut all = self.uploads.each_ref();
@@ -106,7 +106,7 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         self.slots.store(bytes).map_err(Refusal::NotStored)
     }
 
-    /// Refuses a channel that the electrode of a muscle has, but of the one at place `own`.
+    /// Refuses a channel of another muscle's electrode; `own` is the upload's place.
     pub(crate) fn only_free(
         &self,
         channel: u8,
@@ -117,14 +117,14 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
             Some(*place) != own && has == Some(channel)
         });
         match taken {
-            // Places are few.
+            // There are few places.
             Some((place, _)) => Err(Refusal::ChannelTaken { channel, place: place as u8 }),
             None => Ok(()),
         }
     }
 }
 
-/// Reads what is stored, all of it or nothing.
+/// Reads the stored uploads, all or none.
 fn take_uploads(stored: &[u8], uploads: &mut Stored) -> Option<()> {
     let mut rest = stored;
     for upload in uploads {

@@ -1,4 +1,4 @@
-//! What host and device say to each other. Adding to an enumeration's end keeps the version; all else changes it.
+//! Messages between host and device. Appending to an enumeration keeps the version; any other change raises it.
 
 use crate::configuration::{MUSCLES, TYPES};
 use crate::link::{Counters, LinkError, SessionNumber};
@@ -9,54 +9,52 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 use vm_nostd::{Limit, MuscleParams, ParameterError, RecruitmentCurveParams};
 
-/// Rows in a message.
+/// Most rows in a message.
 pub const MOST_ROWS: usize = 8;
-/// Words of a muscle's state that a message has room for.
+/// Most state words in a message.
 pub const MOST_WORDS: usize = 16;
 
-/// From the host. Each is answered by a [`Message::Answer`], and begins only when the one before is answered.
+/// A request of the host. Each is answered by a [`Message::Answer`]; the next is sent after that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-// What arrives is taken apart at once.
+// A received request is taken apart at once.
 #[allow(clippy::large_enum_variant)]
 pub enum Request {
-    /// Begins a session, from this sequence number on; not acted upon while armed. Answer: [`Answer::Info`].
+    /// Begins a session, from this sequence number on; not accepted while armed. Answer: [`Answer::Info`].
     Hello {
-        /// A number that the host makes up: the session's is made of this and of the device's.
+        /// The host's random number: the session number is made of this and of the device's.
         nonce: u32,
     },
-    /// Nothing but that the host is there.
+    /// Keeps the host heard.
     KeepAlive,
-    /// A muscle for a place: validated, stored, and put there at rest. Refused while armed.
+    /// A muscle for a place: validated, stored, and put at rest. Refused while armed.
     Upload {
         /// 0 to [`MUSCLES`] - 1.
         place: u8,
-        /// What goes there.
+        /// The muscle.
         upload: Upload,
     },
-    /// All muscles at rest on these path lengths (m), by themselves midway between the shortest path and the
-    /// longest that morphometry says; rows are counted
-    /// from 0 again. Refused while armed.
+    /// Puts all muscles at rest on these path lengths (m); by default on `MuscleParams::middle_path`. Rows count from 0
+    /// again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
-    /// Inputs of the next ticks. The muscles' time is that of their rows: where none is there, they wait. What a row
-    /// asks of an electrode is put out for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault,
-    /// or a stop, while armed takes with it the rows that have not had their tick.
+    /// Inputs of the next ticks, one row per tick; without a row the muscles wait. A row stimulates for
+    /// [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault or a stop while armed discards waiting rows.
     Rows {
         /// Number of the first.
         first: u32,
         /// Inputs of each tick.
         rows: Vec<[RowInputs; MUSCLES], MOST_ROWS>,
     },
-    /// Stimuli of the channels that no electrode of a muscle has. They are put out for
-    /// [`Limits::drives_ms`](crate::Limits::drives_ms) at most: hosts repeat them.
+    /// Stimuli of channels without an electrode, for [`Limits::drives_ms`](crate::Limits::drives_ms) at most: the host
+    /// repeats them.
     Drive([Option<Stimulus>; CHANNELS]),
-    /// What sensors read. The path counts as missing once it is older than
+    /// Sensor readings. The path counts as missing when older than
     /// [`Limits::readings_ms`](crate::Limits::readings_ms).
     Readings(Readings),
-    /// First step of arming: the fault that was seen.
+    /// First step of arming: names the latched fault.
     Acknowledge(Fault),
     /// Second step of arming.
     Arm,
-    /// Everything off, latched as [`Fault::Stopped`] unless another fault is latched already.
+    /// Everything off; latches [`Fault::Stopped`] unless another fault is latched.
     Stop,
     /// Answer: [`Answer::Report`].
     Report,
@@ -79,20 +77,20 @@ pub enum Mode {
 /// A muscle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Upload {
-    /// How it is recruited.
+    /// Recruitment.
     pub mode: Mode,
-    /// What it is.
+    /// Parameters.
     pub muscle: MuscleParams<TYPES>,
-    /// What stimulates it, if rows are to do that as well: FES only.
+    /// Electrode, if rows stimulate as well (FES only).
     pub electrode: Option<Electrode>,
 }
 
-/// What stimulates a muscle: each row's activation and frequency become pulses of a channel.
+/// Electrode of a muscle: each row's activation and frequency become pulses of its channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Electrode {
     /// 0 to [`CHANNELS`] - 1.
     pub channel: u8,
-    /// Which amplitude recruits how much.
+    /// Recruitment by amplitude.
     pub curve: RecruitmentCurveParams,
     /// See [`Stimulus::width_us`].
     pub width_us: u16,
@@ -102,11 +100,11 @@ pub struct Electrode {
     pub recovery: u8,
 }
 
-/// Inputs of a muscle in a tick; outside of their ranges they are clipped and flagged. For a muscle with an electrode,
-/// an activation or a frequency that is infinite or not a number is [`Fault::Request`].
+/// Inputs of a muscle in a tick; clipped to their ranges and flagged. For a muscle with an electrode, an activation or
+/// a frequency that is not finite is [`Fault::Request`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowInputs {
-    /// U, 0..1.
+    /// Activation U (OpenSim, MuJoCo: excitation or control), 0..1.
     pub activation: f32,
     /// L_mt at the tick's end, m.
     pub path_length: f32,
@@ -114,25 +112,25 @@ pub struct RowInputs {
     pub stimulation_frequency: f32,
 }
 
-/// What sensors read.
+/// Sensor readings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Readings {
-    /// Ω of every channel; none where it was not measured yet.
+    /// Impedance of every channel, Ω; none if not measured yet.
     pub impedance_ohm: [Option<u32>; CHANNELS],
-    /// mV.
+    /// Supply, mV.
     pub supply_mv: u32,
-    /// Path length, µm; none if the sensor gives no number.
+    /// Path length, µm; none without a valid reading.
     pub path_um: Option<i32>,
 }
 
-/// To the host.
-// It is made where it is sent, and taken apart where it arrives.
+/// A message to the host.
+// Built where it is sent, and taken apart where it arrives.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Message<'a> {
-    /// To a request.
+    /// Answer to a request.
     Answer {
-        /// Its sequence number.
+        /// Sequence number of the request.
         to: u16,
         /// The answer.
         #[serde(borrow)]
@@ -140,29 +138,29 @@ pub enum Message<'a> {
     },
     /// A frame was not acted upon.
     NotActedUpon(LinkError),
-    /// What rows have led to.
+    /// Outputs of rows.
     Traces(Vec<Traced, MOST_ROWS>),
 }
 
-/// To a request.
+/// An answer to a request.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer<'a> {
-    /// It was done.
+    /// Done.
     Done,
-    /// It was not.
+    /// Refused.
     Refused(#[serde(borrow)] Refusal<'a>),
-    /// See there.
+    /// Answer to [`Request::Hello`].
     Info(Info),
-    /// See there.
+    /// Answer to [`Request::Report`].
     Report(Report),
-    /// All words of a muscle's state.
+    /// Words of a muscle's state.
     State(Vec<u32, MOST_WORDS>),
 }
 
-/// Why a request was not done.
+/// Why a request was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Refusal<'a> {
-    /// A parameter of a muscle or of its recruitment curve.
+    /// A parameter of a muscle or recruitment curve is out of range.
     Parameter {
         /// See [`ParameterError::field`].
         field: &'a str,
@@ -173,36 +171,36 @@ pub enum Refusal<'a> {
         /// See [`ParameterError::limit`].
         limit: Limit,
     },
-    /// A whole number.
+    /// A whole number is out of range.
     Number {
-        /// Its field.
+        /// Name of the field.
         field: &'a str,
         /// The refused value.
         value: u32,
-        /// The least that is taken.
+        /// Least allowed value.
         least: u32,
-        /// The most that is taken.
+        /// Greatest allowed value.
         most: u32,
     },
-    /// Not while stimulation is armed.
+    /// Not allowed while armed.
     Armed,
-    /// Nothing is at that place.
+    /// No muscle at that place.
     Empty,
-    /// Only so many rows of these can wait.
+    /// More rows than can wait.
     NoRoom {
-        /// How many.
+        /// Free places.
         room: u32,
     },
     /// Memory did not keep what it was given. What was stored before still is, and the next boot restores it, unless the
     /// reason is [`NotStored::Unknown`].
     NotStored(NotStored),
-    /// Supervision did not go along.
+    /// Supervision refused.
     NotArmed(NotArmed),
-    /// The electrode of another muscle has that channel.
+    /// Another muscle's electrode has the channel.
     ChannelTaken {
         /// The channel.
         channel: u8,
-        /// The place of that muscle.
+        /// Place of that muscle.
         place: u8,
     },
 }
@@ -210,7 +208,7 @@ pub enum Refusal<'a> {
 impl From<ParameterError> for Refusal<'static> {
     fn from(error: ParameterError) -> Self {
         let ParameterError { field, fiber, value, limit } = error;
-        // Types of a muscle are few.
+        // There are few types.
         Self::Parameter { field, fiber: fiber.map(|index| index as u8), value, limit }
     }
 }
@@ -222,60 +220,60 @@ impl From<StimulusError> for Refusal<'static> {
     }
 }
 
-/// What a device is.
+/// Description of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Info {
-    /// Muscles it has places for.
+    /// Places for muscles.
     pub muscles: u8,
     /// Fibre types of each.
     pub types: u8,
     /// Channels.
     pub channels: u8,
-    /// What frames of this session begin their checksums with.
+    /// Number of the session.
     pub session: SessionNumber,
-    /// Time between ticks, µs.
+    /// Tick time, µs.
     pub tick_us: u32,
-    /// Places that had a muscle in memory at boot.
+    /// Muscles restored at boot.
     pub restored: u8,
 }
 
-/// How a device is.
+/// Status of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
-    /// Where supervision is.
+    /// State of supervision.
     pub state: State,
-    /// What is wrong with what it sees, if anything.
+    /// Fault that is present now, if any.
     pub wrong: Option<Fault>,
     /// Ticks since boot.
     pub ticks: u32,
-    /// Rows since the muscles' rest.
+    /// Rows since the last rest.
     pub rows: u32,
-    /// From when a tick was due until it had ended, the longest since boot, µs.
+    /// Longest time from a tick's due time to its end since boot, µs.
     pub longest_us: u32,
-    /// Ticks that began or ended too late since boot.
+    /// Late ticks since boot.
     pub late: u32,
     /// Frames since boot.
     pub frames: Counters,
 }
 
-/// What a row has led to.
+/// Outputs of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Traced {
     /// The row's number.
     pub row: u32,
-    /// Of each muscle; nothing where there is none.
+    /// Outputs of each muscle; 0 without one.
     pub outputs: [RowOutputs; MUSCLES],
 }
 
-/// Outputs of a muscle in a tick, to the bit.
+/// Outputs of a muscle in a tick, bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowOutputs {
-    /// N.
+    /// Force, N.
     pub force: f32,
-    /// L_ce0.
+    /// Fascicle length, L_ce0.
     pub fascicle_length: f32,
-    /// L_ce0/s.
+    /// Fascicle velocity, L_ce0/s.
     pub fascicle_velocity: f32,
-    /// Bits of the model's status.
+    /// Status flags of the model.
     pub status: u16,
 }
