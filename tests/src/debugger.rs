@@ -1,20 +1,20 @@
-//! A debugger's line into an emulator (GDB's remote protocol): reads and writes memory while time stands still.
+//! A GDB remote protocol client for QEMU: reads and writes memory of a stopped machine.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::Duration;
 
-/// Where a debugger can attach to an emulator.
+/// Port for a debugger.
 pub struct Port(u16);
 
 impl Port {
-    /// One that is free.
+    /// A free port.
     pub fn free() -> Self {
         let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
         Self(listener.local_addr().expect("an address").port())
     }
 
-    /// What the emulator has to be told.
+    /// Arguments for QEMU.
     pub fn arguments(&self) -> Vec<String> {
         vec!["-gdb".to_owned(), format!("tcp:127.0.0.1:{},nodelay=on", self.0)]
     }
@@ -24,7 +24,7 @@ impl Port {
         self.attached(TcpStream::connect(("127.0.0.1", self.0)).expect("an emulator"))
     }
 
-    /// The same once there is a machine.
+    /// Attaches as soon as there is a machine.
     pub fn attach_at_last(&self) -> Debugger {
         for _ in 0..300 {
             if let Ok(stream) = TcpStream::connect(("127.0.0.1", self.0)) {
@@ -41,25 +41,25 @@ impl Port {
     }
 }
 
-/// Attached to a machine that stands still.
+/// A debugger attached to a stopped machine.
 pub struct Debugger(TcpStream);
 
-/// Bytes that one packet reads.
+/// Bytes per packet.
 const CHUNK: usize = 512;
 
 impl Debugger {
-    /// Lets it run.
+    /// Continues.
     pub fn go_on(&mut self) {
         self.send("c");
     }
 
-    /// Stops it again.
+    /// Stops.
     pub fn stop(&mut self) {
         self.0.write_all(&[0x03]).expect("a line");
         while !self.packet().starts_with('T') {}
     }
 
-    /// Memory of the stopped machine.
+    /// Reads memory of the stopped machine.
     pub fn read(&mut self, address: u64, length: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
         while bytes.len() < length {
@@ -88,7 +88,7 @@ impl Debugger {
         write!(self.0, "${command}#{sum:02x}").expect("a line");
     }
 
-    /// The answer to a command: what comes besides says that the machine has stopped.
+    /// Answer to a command, skipping stop notices.
     fn reply(&mut self) -> String {
         loop {
             let packet = self.packet();
@@ -98,7 +98,7 @@ impl Debugger {
         }
     }
 
-    /// The next packet, acknowledged.
+    /// Next packet, acknowledged.
     fn packet(&mut self) -> String {
         let mut byte = [0];
         let mut next = || {

@@ -16,20 +16,20 @@ use host_sim::target::{self, Board, TargetError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Says why a test did not run, or fails where `VM_REQUIRE_TARGET` is set and it must.
+/// Prints why a test was skipped; panics if `VM_REQUIRE_TARGET` is set.
 pub fn skip(reason: &str) {
     assert!(std::env::var_os("VM_REQUIRE_TARGET").is_none(), "not to be skipped: {reason}");
-    // Past the harness, which keeps what a passing test prints to itself.
+    // Directly to standard error: the harness captures the output of passing tests.
     writeln!(std::io::stderr(), "SKIPPED: {reason}").expect("standard error is open");
 }
 
-/// Builds a program for a board, unless the target's library is not to be had; panics if it
-/// does not build.
+/// Builds a program for a board; an error if the target's library is missing. Panics if it does
+/// not build.
 pub fn build(board: Board, program: &str) -> Result<PathBuf, TargetError> {
     build_with(board, program, &[])
 }
 
-/// The same with variables of the environment.
+/// The same with environment variables.
 pub fn build_with(
     board: Board,
     program: &str,

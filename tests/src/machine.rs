@@ -1,4 +1,4 @@
-//! The stimulator as it would be flashed, in QEMU, with a host that speaks to it and looks at its pins.
+//! The stimulator's image in QEMU, with a host that talks to it and reads its pins.
 
 use crate::{build, skip};
 use firmware::Stimulus;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use stimulator_tests::host::READINGS;
 
-/// The firmware's image, if it is to be had.
+/// The firmware's image, unless skipped.
 pub fn image() -> Option<PathBuf> {
     let built = build(STM32F405, STIMULATOR).and_then(|image| {
         let version = std::process::Command::new(host_sim::target::QEMU).arg("--version").output();
@@ -25,7 +25,7 @@ pub fn image() -> Option<PathBuf> {
     built.map_err(|reason| skip(&reason.to_string())).ok()
 }
 
-/// A machine, and what its pins did.
+/// A machine with a log of its pins.
 pub struct Machine {
     line: Emulated,
     receiver: Receiver,
@@ -34,24 +34,24 @@ pub struct Machine {
     log: tempfile::NamedTempFile,
 }
 
-/// A stimulus with which nothing is wrong, of an amplitude in µA.
+/// A valid stimulus of an amplitude in µA.
 pub fn stimulus(amplitude_ua: u32) -> Stimulus {
     Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 1000, recovery: 1 }
 }
 
-/// Messages that keep a host heard for some hundredths of a second.
+/// Messages that keep the host heard for some 10 ms.
 const KEPT_ALIVE: usize = 400;
 
-/// Bytes that may be on their way to the firmware, which has room for four thousand.
+/// Most bytes in flight to the firmware, which buffers 4,000.
 const WINDOW: usize = 3600;
 
-/// With a machine that does not do what it should.
+/// Timeout of the machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Pins that do not move for so long are left alone.
+/// Pins count as settled after this time without a change.
 const STILL: Duration = Duration::from_millis(300);
 
-/// A host that is there, and a sensor that works.
+/// Messages of a live host with a working sensor.
 pub fn kept_alive() -> Vec<Request> {
     let one = |index: usize| match index % 8 {
         0 => {
@@ -68,33 +68,33 @@ pub fn drive() -> Request {
     Request::Drive([Some(stimulus(10_000)); CHANNELS])
 }
 
-/// What a device said to a request.
+/// Answer of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Said {
-    /// It was done.
+    /// Done.
     Done,
-    /// Supervision did not go along.
+    /// Supervision refused.
     NotArmed(NotArmed),
-    /// How it is.
+    /// Report.
     Report(Report),
     /// A muscle's state.
     Words(Vec<u32>),
-    /// Anything else, in words.
+    /// Anything else, as text.
     Other(String),
 }
 
 impl Machine {
-    /// Starts an image, with more arguments for the emulator, and greets it.
+    /// Starts an image with additional arguments for QEMU, and greets it.
     pub fn start(image: &Path, arguments: Vec<String>) -> Self {
         let log = tempfile::NamedTempFile::new().expect("a file");
-        // QEMU has no pins: what is written to them is in its log.
+        // QEMU has no pins; writes to them are in its log.
         let mut all = ["-d", "unimp", "-D"].map(str::to_owned).to_vec();
         all.push(log.path().display().to_string());
         all.extend(arguments);
         Self::greeted(Emulated::run(image, &all).expect("a machine"), log)
     }
 
-    /// The same machine after it has started again.
+    /// The machine after a restart.
     pub fn greeted_again(self) -> Self {
         Self::greeted(self.line, self.log)
     }
@@ -106,14 +106,14 @@ impl Machine {
         Self { line: client.into_line(), receiver: Receiver::new(), session, sequence, log }
     }
 
-    /// Sends requests, and returns what was said to each.
+    /// Sends requests and returns the answers.
     pub fn script(&mut self, requests: &[Request]) -> Vec<Said> {
         self.converse(requests, 0)
     }
 
-    /// The same, but for the last ones, whose answers are not waited for.
+    /// The same, without waiting for the last answers.
     ///
-    /// As much is always on its way as the firmware has room for: it finds the next request as soon as it looks.
+    /// Keeps the firmware's buffer filled, so that the next request is always there.
     pub fn converse(&mut self, requests: &[Request], unanswered: usize) -> Vec<Said> {
         let mut frames = requests.iter();
         let (mut lengths, mut said) = (VecDeque::new(), Vec::new());
@@ -163,7 +163,7 @@ impl Machine {
         }
     }
 
-    /// How it is.
+    /// Report.
     pub fn report(&mut self) -> Report {
         match self.script(&[Request::Report])[..] {
             [Said::Report(report)] => report,
@@ -171,10 +171,10 @@ impl Machine {
         }
     }
 
-    /// Names the fault that is latched, arms, and gives pulses for a while; then what is to happen. Returns how it
-    /// was before that, and what was said to it.
+    /// Acknowledges the latched fault, arms, and gives pulses for a while; then sends the script. Returns the report before
+    /// it, and the answers.
     ///
-    /// All in one, for between two scripts the firmware's host is silent for any time.
+    /// In one script, because the time between two scripts is arbitrary.
     pub fn stimulated(&mut self, latched: Fault, then: &[Request]) -> (Report, Vec<Said>) {
         let mut requests =
             vec![Request::Readings(READINGS), drive(), Request::Acknowledge(latched), Request::Arm];
@@ -190,8 +190,7 @@ impl Machine {
         (report, after)
     }
 
-    /// The pins once nothing has moved them for a while. Pulses come every 10 ms of the machine's time, of which a busy
-    /// host may give it little.
+    /// Settled pins. Pulses come every 10 ms of the machine's time, which may be slow on a busy host.
     pub fn pins_at_last(&self) -> Pins {
         let started = Instant::now();
         let mut pins = self.pins();
@@ -206,7 +205,7 @@ impl Machine {
         }
     }
 
-    /// Levels of bridge and channel pins, as the log's end has them, and how often the bridge was closed.
+    /// Levels of bridge and channel pins at the log's end, and the number of bridge closures.
     pub fn pins(&self) -> Pins {
         let text = std::fs::read_to_string(self.log.path()).expect("a log");
         let mut pins = Pins::default();
@@ -223,21 +222,21 @@ impl Machine {
                 _ => continue,
             };
             pins.closed += u32::from(port == "GPIOB" && value & 3 != 0);
-            // Set by the lower half, reset by the upper one.
+            // The lower half sets, the upper half resets.
             *levels = (*levels | value & 0xffff) & !(value >> 16);
         }
         pins
     }
 }
 
-/// Levels of pins, and what they did.
+/// Levels and activity of pins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pins {
     /// A bit for each pin of the bridge.
     pub bridge: u32,
     /// A bit for each channel.
     pub channels: u32,
-    /// How often the bridge was closed.
+    /// Bridge closures.
     pub closed: u32,
 }
 

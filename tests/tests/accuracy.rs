@@ -1,4 +1,4 @@
-//! Every comparison of `vm verify` passes, and every one that could fail does when it should.
+//! Every comparison of `vm verify` passes, and each check fails when it should.
 
 use host_sim::metrics::ForceError;
 use host_sim::tolerance;

@@ -1,5 +1,5 @@
-//! Six muscles and a skeleton, coupled at every tick: energy is neither made nor lost, every arithmetic
-//! moves the arm as the reference does, and effective length does what the paper found.
+//! Six muscles and a skeleton, coupled at every tick: energy is conserved, every arithmetic moves the arm as
+//! the reference does, and effective length destabilises it as in the paper.
 
 use host_sim::arm::{self, Activations, Arm, Drive, Moment, Outcome};
 use host_sim::engine::Arithmetic;
@@ -40,7 +40,7 @@ const MODES: [Mode; 4] =
     [Mode::Continuous, Mode::Fes, Mode::Discrete, Mode::DiscreteEffectiveLength];
 const ARITHMETICS: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
 
-/// Kinetic energy is what muscles did over their paths (there is no friction and no gravity).
+/// Kinetic energy equals the work of the muscles (no friction, no gravity).
 #[test]
 fn energy_is_balanced() {
     for mode in MODES {
@@ -59,7 +59,7 @@ fn energy_is_balanced() {
     }
 }
 
-/// What is left of the balance is the coupling's: a quarter of it with half the tick.
+/// The energy error is that of the coupling: it falls to a quarter with half the tick.
 #[test]
 fn the_balance_is_of_second_order() {
     let coarse = drive(Mode::Continuous, Arithmetic::F64);
@@ -68,13 +68,13 @@ fn the_balance_is_of_second_order() {
     assert!((3.5..4.5).contains(&ratio), "{ratio}");
 }
 
-/// Over 5 s, in which every error of force has had its effect on where the arm is.
+/// Over 5 s, so that errors of force affect the angles.
 #[test]
 fn the_arm_moves_as_with_the_reference() {
     for mode in MODES {
         let (reference, _) = run(&drive(mode, Arithmetic::Reference));
-        // Degrees. Under FES a strong pull starts at once; with effective length the arm is unstable, and
-        // differences grow with it.
+        // Degrees. FES starts at full force; with effective length the arm is unstable, and differences
+        // grow.
         let [of_f32, of_fixed] = match mode {
             Mode::Continuous | Mode::Discrete => [6e-4, 3.8e-3],
             Mode::Fes => [0.017, 0.017],
@@ -88,7 +88,7 @@ fn the_arm_moves_as_with_the_reference() {
     }
 }
 
-/// Figure 3: unstable with effective length, stable without, whatever it is computed in.
+/// Figure 3: unstable with effective length, stable without, in every arithmetic.
 #[test]
 fn effective_length_makes_the_arm_unstable() {
     for arithmetic in ARITHMETICS {
@@ -97,7 +97,7 @@ fn effective_length_makes_the_arm_unstable() {
             let unstable = mode == Mode::DiscreteEffectiveLength;
             let swings = outcome.swings.expect("long enough");
             assert_eq!(swings.settle(), !unstable, "{mode:?} {arithmetic:?}: {outcome:?}");
-            // The elbow alone, again and again, long after it had come to rest.
+            // The elbow alone oscillates, long after it had settled.
             assert_eq!(swings.late[1] > 5.0, unstable, "{mode:?} {arithmetic:?}");
             assert_eq!(swings.growth()[1] > 0.5, unstable, "{mode:?} {arithmetic:?}");
             assert!(!outcome.out_of_range);
@@ -105,7 +105,7 @@ fn effective_length_makes_the_arm_unstable() {
     }
 }
 
-/// What is judged, and what is not.
+/// Which runs are judged.
 #[test]
 fn an_arm_that_no_muscle_moves_comes_to_rest() {
     for activation in [0.0, 0.05] {
@@ -117,7 +117,7 @@ fn an_arm_that_no_muscle_moves_comes_to_rest() {
         let short = Drive { duration: 2.9, ..slow };
         assert!(run(&short).1.swings.is_none());
     }
-    // Far beyond what an elbow does.
+    // Far beyond the range of an elbow.
     let activations = Activations { shoulder: 1.0, elbow: 0.0, biarticular: 1.0 };
     let over = Drive { activations, ..drive(Mode::Continuous, Arithmetic::F64) };
     let arm = Arm::built_in();
@@ -140,7 +140,7 @@ fn bad_values_are_named() {
     assert!(message.starts_with("elbow angle = 171.88"), "{message}");
     assert!(message.ends_with("must be 0 to 155 degrees"), "{message}");
     assert_eq!(refuse(&|drive| drive.time_step = 1e-5), "tick = 0.01: must be 0.1 to 2 ms");
-    // A posture in which a muscle would be slack whatever its fascicles do.
+    // A posture in which a muscle is slack at any fascicle length.
     let message = refuse(&|drive| drive.start = [135.0_f64, 155.0].map(f64::to_radians));
     let named = "start = 135.000, 155.000 degrees: elbow flexor: path_length = ";
     assert!(message.starts_with(named), "{message}");

@@ -1,6 +1,6 @@
-//! The library for C: its header is current, and C programs on a host and on the target have the bits of Rust's.
+//! The C library: its header is current, and C programs on host and target have the bits of Rust's.
 //!
-//! Where a C compiler or QEMU is missing, these tests say SKIPPED; with `VM_REQUIRE_TARGET` set that is a failure.
+//! Without a C compiler or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set they fail.
 
 use host_sim::target::{self, STM32F405};
 use host_sim::trace;
@@ -75,7 +75,7 @@ fn inputs() -> Inputs {
 }
 
 impl Inputs {
-    /// For C; floats to the bit.
+    /// As a C header; floats are exact.
     fn header(&self) -> String {
         let mut text =
             String::from("#include \"vm_nostd.h\"\nstatic const VmInputF32 inputs_f32[] = {\n");
@@ -99,7 +99,7 @@ impl Inputs {
         text
     }
 
-    /// What Rust makes of them, in the order of the C program.
+    /// Outputs of Rust, in the order of the C program.
     fn bytes(&self) -> Vec<u8> {
         let fixed: Vec<Input<Fixed>> =
             self.integer.iter().map(|&(a, l, f)| Input::<Fixed>::from_integers(a, l, f)).collect();
@@ -181,7 +181,7 @@ fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) ->
     }
 }
 
-/// A program's words are Rust's. Its exit status is the line of a misuse that it got away with.
+/// A program's words equal Rust's. Its exit status is the line of a misuse that was not refused.
 fn compare(output: &Output) {
     assert!(output.status.success(), "tests/c/golden.c: {}", output.status);
     let expected = inputs().bytes();
@@ -189,7 +189,7 @@ fn compare(output: &Output) {
     assert_eq!(expected.len(), 4 * 20 * (ROWS - 1));
     let same = output.stdout.chunks(20).zip(expected.chunks(20)).position(|(a, b)| a != b);
     assert_eq!(same, None, "the first tick that differs");
-    // The rows are no row of zeros.
+    // The rows are not all zeros.
     assert!(expected.chunks(20).filter(|tick| tick[..4] != [0; 4]).count() > ROWS);
 }
 

@@ -1,6 +1,6 @@
 //! Cycles: what `vm cycles` says of a function does not depend on how it was traced.
 //!
-//! Where the thumb target or QEMU cannot be had, these tests say SKIPPED.
+//! Without the thumb target or QEMU these tests print SKIPPED.
 
 use host_sim::cycles::{Argument, Profile, ProfileError, Tracer, of_image};
 use host_sim::target::STM32F405;

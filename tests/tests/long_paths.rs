@@ -1,5 +1,5 @@
-//! The longest path of a muscle scales its parallel elastic element, and nothing ends there: paths are taken up to
-//! where an equation does.
+//! The longest path scales the parallel elastic element and is no limit: paths are accepted up to the limit of an
+//! equation.
 
 use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};
@@ -29,7 +29,7 @@ fn inputs(at: impl Fn(f64) -> [f64; 3]) -> InputTrace {
     InputTrace { start: 0.0, time_step: 1e-3, inputs }
 }
 
-/// From 0 to 1 without a jerk.
+/// Smooth step from 0 to 1.
 fn smooth(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
@@ -77,14 +77,14 @@ fn the_domain_ends_where_no_activation_keeps_the_fascicles_where_n_f_is_defined(
     let (_, longest) = link::path_domain(&muscle);
     assert!(longest > muscle.L_mt_max + 0.01, "{longest}");
     let (_, most) = MUSCLE.fascicle_domain();
-    // At rest the fascicles are beyond it, and said to be; passive forces hold all the way.
+    // At rest the fascicles are beyond it, which is flagged; passive forces are valid throughout.
     let trace = inputs(|t| [0.0, 0.18 + (longest - 1e-6 - 0.18) * smooth(t / 1.2), 20.0]);
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
         let (error, flags) = error(&muscle, Mode::Continuous, arithmetic, &trace);
         assert!(error <= 0.05, "{arithmetic:?}: {error} % F0");
         assert_eq!(flags, Status::FASCICLE_OUTSIDE_DOMAIN, "{arithmetic:?}");
     }
-    // No force of F0 keeps them inside on a path that is longer.
+    // On a longer path no force of F0 keeps them inside.
     let e = &muscle.elements;
     let l_max = muscle.maximum_fascicle_length();
     let passive = e.c1 * e.k1 * ((most / l_max - e.Lr1) / e.k1).exp().ln_1p();

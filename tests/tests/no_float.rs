@@ -1,7 +1,7 @@
-//! The tick in fixed point needs no floating-point unit, no library that stands in for one, and no
-//! division of 64 bits: read from the images of all three cores.
+//! The tick in fixed point needs no floating point, in hardware or software, and no 64-bit division: read from
+//! the images of all three cores.
 //!
-//! Where a target's library cannot be had, these tests say SKIPPED.
+//! Without a target's library these tests print SKIPPED.
 
 use host_sim::cycles::{Reached, reachable};
 use host_sim::target::{Board, CORTEX_M0, CORTEX_M3, STM32F405};
@@ -46,7 +46,7 @@ fn no_floating_point_and_no_long_division_is_reachable_from_the_tick() {
 
 #[test]
 fn what_is_forbidden_would_be_found() {
-    // The whole program builds muscles, in software floating point and with its divisions.
+    // The whole program builds muscles, with software floating point and divisions.
     let Some(reached) = steps(CORTEX_M3, "main") else { return };
     let found = reached.functions.iter().filter(|name| forbidden(name)).count();
     assert!(found >= 5, "{:?}", reached.functions);

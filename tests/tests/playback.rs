@@ -1,4 +1,4 @@
-//! A trace played over the link by the client of `vm hil`, to the whole firmware but its chip.
+//! A trace played over the link by the client of `vm hil`, to the whole firmware without its chip.
 
 use firmware::link::{Answer, Message, NO_SESSION, Receiver, Request, SessionNumber, encode};
 use host_sim::hil::{self, Client, HilError};
@@ -24,12 +24,12 @@ fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
         assert_eq!(played.rows.len(), trace.inputs.len());
         assert_eq!(played.report.rows as usize, trace.inputs.len() - 1);
         assert_eq!(played.report.frames.broken + played.report.frames.refused, 0);
-        // Without arming, no current, whatever the rows say.
+        // Without arming no current flows.
         assert_eq!(host.line().flowed(), 0);
     }
 }
 
-/// The comparison can fail: a device that was given another muscle.
+/// The comparison fails for a device with another muscle.
 #[test]
 fn another_muscle_has_other_bits() {
     struct Tampered {
@@ -53,7 +53,7 @@ fn another_muscle_has_other_bits() {
     }
     impl Write for Tampered {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            // An upload is given another mass, in a frame that is whole.
+            // An upload gets another mass, in a valid frame.
             let mut receiver = Receiver::new();
             for &byte in bytes {
                 if let Some(Ok(frame)) = receiver.push(byte, self.session)

@@ -1,4 +1,4 @@
-//! What each room may touch.
+//! Architecture: who may know whom.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -68,14 +68,14 @@ fn only_the_board_names_the_chip() {
     assert_eq!(names, ["board/memory.rs", "board/noise.rs", "board.rs"]);
 }
 
-/// What the explorer of interleavings asks before: the firmware's levels share nothing by themselves. The board's watchdog
-/// tells flash that it is patient; it is built for the chip only.
+/// The explorer of interleavings intercepts every access: the firmware's levels share nothing else. The board's
+/// watchdog, built for the chip only, shares its timeout with flash.
 #[test]
 fn only_one_module_names_what_levels_share() {
     assert_eq!(mentions("firmware/src", &["atomic::"]), ["board/watchdog.rs", "shared.rs"]);
 }
 
-/// What is built for each mutant of the libraries.
+/// These packages are built for each mutant.
 #[test]
 fn the_tests_of_the_libraries_build_without_the_host() {
     for package in ["tests/model", "tests/stimulator", "firmware", "vm-nostd"] {
@@ -86,7 +86,7 @@ fn the_tests_of_the_libraries_build_without_the_host() {
     }
 }
 
-/// An example of a library is a program that shows how to use it; there are none but packages of their own.
+/// Examples are a package of their own; cargo must not take its build script for one.
 #[test]
 fn no_build_script_passes_for_an_example() {
     let output = std::process::Command::new(env!("CARGO"))

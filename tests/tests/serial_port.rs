@@ -1,4 +1,4 @@
-//! `vm hil --port`: a device file of a serial port at the host's end of the line, the emulated board at the other.
+//! `vm hil --port` with a pseudo-terminal to the emulated board.
 
 use host_sim::hil;
 use host_sim::reference::Mode;

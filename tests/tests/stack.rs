@@ -1,6 +1,6 @@
-//! The stimulator's stack: what the image says of it against what it takes in QEMU, and what becomes of an overflow.
+//! The stimulator's stack: computed against measured in QEMU, and the effect of an overflow.
 //!
-//! Where the thumb target or QEMU cannot be had, these tests say SKIPPED.
+//! Without the thumb target or QEMU these tests print SKIPPED.
 
 use firmware::link::{Electrode, MOST_ROWS, Request, RowInputs, Upload};
 use firmware::safety::{Fault, State};
@@ -29,7 +29,7 @@ fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
     assert!(current, "the firmware's README is not what is computed: cargo vm stack --write");
 }
 
-/// A change of a description, and what is said of it.
+/// A change of a description and the expected problem.
 type Case = (fn(&mut Description), &'static str);
 
 #[test]
@@ -73,7 +73,7 @@ fn stale(indirect: stack::Indirect) -> stack::Indirect {
     stack::Indirect { function: "HardFault".to_owned(), ..indirect }
 }
 
-/// Memory for the stack, and the rest of memory.
+/// Memory of the stack and of the statics.
 fn layout(image: &Path) -> (Range<u32>, Range<u32>) {
     let bytes = std::fs::read(image).expect("an image");
     let file = object::File::parse(&*bytes).expect("an ELF file");
@@ -81,7 +81,7 @@ fn layout(image: &Path) -> (Range<u32>, Range<u32>) {
     let top = u32::from_le_bytes(vectors[..4].try_into().expect("a word"));
     let ram = description().ram;
     let end = ram.start + ram.bytes;
-    // With the stack on top, as it would be by itself, what is at the bottom is not the stack's.
+    // With the default layout the stack is at the top of RAM.
     if top == end {
         (end - 0x8000..end, ram.start..end - 0x8000)
     } else {
@@ -123,17 +123,17 @@ fn traffic() -> Vec<Request> {
         Request::Report,
         Request::Stop,
         Request::Upload { place: 0, upload: refused },
-        // Of channels that electrodes have.
+        // Refused: electrodes have these channels.
         drive(),
     ]);
     requests
 }
 
-/// Nothing is written there by itself.
+/// Watermark of unused stack.
 const PAINT: u8 = 0xA5;
 
-/// How far above its measured depth the computed one may be: it has the deepest paths of all priorities at once. It was
-/// 1.09 when this was written.
+/// Greatest ratio of computed to measured depth. The computed one nests the deepest paths of all priorities; the ratio
+/// was 1.09 when this was written.
 const MOST_RATIO: f64 = 1.5;
 
 #[test]
@@ -147,7 +147,7 @@ fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
     let port = Port::free();
     let mut arguments = port.arguments();
     arguments.push("-S".to_owned());
-    // Greets before there is anybody: the machine stands still until the stack is painted.
+    // The machine is halted until the stack is painted; the greeting waits.
     let painted = std::thread::scope(|scope| {
         let painter = scope.spawn(|| {
             let mut debugger = port.attach_at_last();
@@ -172,7 +172,7 @@ fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
     let ratio = f64::from(computed) / f64::from(measured);
     assert!(ratio <= MOST_RATIO, "{computed} B computed, {measured} measured: {ratio:.2}");
 
-    // The priorities that the description says are those that the core has been told, of 4 bits each.
+    // The described priorities equal those in the core's registers, of 4 bits each.
     for handler in &description.handlers {
         let Priority::Level(level) = handler.priority else { continue };
         let register = match handler.vector {
@@ -184,7 +184,7 @@ fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
     }
 }
 
-/// Whether a word is what the core gives a handler as its return address.
+/// Whether a word is an EXC_RETURN value.
 fn is_return_of_exception(word: &[u8]) -> bool {
     matches!(word, [0xE1 | 0xE9 | 0xF1 | 0xF9, 0xFF, 0xFF, 0xFF])
 }
@@ -194,8 +194,8 @@ fn returns_of_exceptions(debugger: &mut Debugger, range: &Range<u32>) -> usize {
     memory.chunks_exact(4).filter(|word| is_return_of_exception(word)).count()
 }
 
-/// While pulses flow, the tick takes stack without end: the first word beyond memory is a fault of the core, statics
-/// are what they were, and the chip starts again in neutral.
+/// The tick overflows the stack during pulses: the first word outside RAM faults the core, statics are unchanged, and
+/// the chip restarts in neutral.
 #[test]
 fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
     let Some(image) = image() else { return };
@@ -215,7 +215,7 @@ fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
     let function = |name| symbol(&image, name).0 & !1;
     let (tick, fault) = (function("SysTick"), function("HardFault"));
     let kept = (debugger.read(tick, 4), debugger.read(fault, 2));
-    // push {r0-r7, lr}, and again; the core's fault handler waits to be looked at.
+    // push {r0-r7, lr} in a loop; the fault handler loops, too.
     debugger.write(tick, &[0xFF, 0xB5, 0xFD, 0xE7]);
     debugger.write(fault, &[0xFE, 0xE7]);
     debugger.go_on();
@@ -233,7 +233,7 @@ fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
     let after = returns_of_exceptions(&mut debugger, &statics);
     assert_eq!(after, before, "the stack was written over the statics");
 
-    // The handler as it is, with a stack pointer that is of no use.
+    // Restores the handlers; the stack pointer stays invalid.
     debugger.write(tick, &kept.0);
     debugger.write(fault, &kept.1);
     let closed = machine.pins().closed;

@@ -1,5 +1,4 @@
-//! The inverse under FES: the stimulation it names, held by the reference for seconds, makes the force that
-//! was asked for.
+//! The inverse under FES: its stimulation, held by the reference for seconds, gives the wanted force.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::link;
@@ -10,10 +9,10 @@ use vm_nostd::{Fixed, Scalar, Status, SteadyFes};
 
 const PATHS: [f64; 4] = [0.13, 0.145, 0.16, 0.175];
 const FREQUENCIES: [f64; 3] = [8.0, 20.0, 45.0];
-/// As long as it takes to come to rest, s.
+/// Time to settle, s.
 const HELD: f64 = 4.0;
 
-/// The force (N) that the reference holds in the end.
+/// Final force of the reference, N.
 fn held(muscle: &Muscle, activation: f64, path_length: f64, stimulation_frequency: f64) -> f64 {
     let input = Input { activation, path_length, stimulation_frequency };
     let time_step = 2e-3;
@@ -31,12 +30,12 @@ fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Inp
     }
 }
 
-/// A force in N as an arithmetic has it.
+/// A force in N, in an arithmetic.
 fn force<S: Scalar>(newtons: f64) -> S::Force {
     S::ONE.force(&S::force_factor(newtons))
 }
 
-/// The largest errors, in % of F0: of the steady force, and of the force that the inverse gets.
+/// Largest errors of the steady force and of the inverse, % of F0.
 fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
     let muscle = paper_muscle();
     let f0 = muscle.f0();
@@ -54,7 +53,7 @@ fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
             let got = held(&muscle, found.activation.to_f64(), path, frequency);
             inverse = inverse.max((got - reference).abs());
         } else {
-            // At the ends of what can be reached, the nearest may be either side of it.
+            // At the ends of the reachable range the nearest force may be on either side.
             assert_eq!(found.status, Status::FORCE_UNREACHABLE);
             assert!([0.0, 1.0].contains(&activation), "U {activation} {path} m {frequency} pps");
             inverse = inverse.max((S::newtons(found.force) - reference).abs());

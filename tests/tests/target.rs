@@ -1,7 +1,7 @@
 //! On the target: the emulated STM32F405 leaves the same bits as the host, tick by tick.
 //!
-//! Where the thumb target or QEMU cannot be had, these tests say SKIPPED; with
-//! `VM_REQUIRE_TARGET` set, as in CI, a skip is a failure.
+//! Without the thumb target or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set, as in
+//! CI, they fail.
 
 use firmware::{Arithmetic, Record, Rig, Scenario, TICKS, frame_words};
 use host_sim::target::{self, Board, CORTEX_M0, CORTEX_M3, STM32F405, TargetError};
@@ -43,7 +43,7 @@ fn emulate(board: Board, program: &Path) -> Result<Vec<u8>, TargetError> {
     Ok(bytes)
 }
 
-/// Keeps frames as the target writes them.
+/// Collects the target's frames.
 struct Bytes(Vec<u8>);
 
 impl Record for Bytes {
@@ -61,7 +61,7 @@ fn on_host<S: Arithmetic>() -> Vec<u8> {
     bytes.0
 }
 
-/// The first tick whose bits differ, if any does.
+/// First tick whose bits differ, if any.
 fn compare<S: Arithmetic>(on_target: &[u8]) {
     const { assert!(TICKS >= 10_000) };
     let on_host = on_host::<S>();
@@ -106,7 +106,7 @@ fn the_scenario_visits_what_a_muscle_can_meet() {
     let word = |frame: &[u8], index: usize| {
         u32::from_le_bytes(frame[4 * index..4 * index + 4].try_into().expect("four bytes"))
     };
-    // Of each muscle: the largest force, the smallest, and all flags.
+    // Largest and smallest force and all flags of each muscle.
     for muscle in 0..2 {
         let at = size / 8 * muscle + size / 8 - 4;
         let forces = on_host.chunks(size).map(|frame| f32::from_bits(word(frame, at)));

@@ -1,4 +1,4 @@
-//! Fixed point does not drift: ten minutes end where the reference does.
+//! Fixed point does not drift: after ten minutes it agrees with the reference.
 //!
 //! CI runs this a second time in a profile that checks every addition for overflow.
 

@@ -1,4 +1,4 @@
-//! Every bit of every mode, arithmetic and kind of muscle, as it was when somebody last looked at what had changed.
+//! Golden bits of every mode, arithmetic and kind of muscle.
 //!
 //! `golden.toml` of host-sim holds the bits of the published scenarios; this needs no host, and goes where those do
 //! not: to paths that jump, inputs that are no numbers, and short ticks. Written by

@@ -1,4 +1,4 @@
-//! Fatigue in `f32` and fixed point against its equation, slow as it may be, and whatever comes.
+//! Fatigue in `f32` and fixed point against its equation, for slow changes and arbitrary inputs.
 
 use model_tests::muscles::config;
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Every limit refuses what is beyond it, by name, and every flag is raised by what it names.
+//! Every limit refuses values beyond it by name, and every flag is raised by its cause.
 
 use firmware::MUSCLE;
 use vm_nostd::{

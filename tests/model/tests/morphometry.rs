@@ -1,4 +1,4 @@
-//! What `f32` takes of published morphometry, fixed point takes, and as accurately: fascicles of 1.5 to 50 cm, tendons
+//! Fixed point accepts the published morphometry that `f32` accepts, with the same accuracy: fascicles of 1.5 to 50 cm, tendons
 //! of 0.05 to 12 fascicle lengths and at most 2 m, F0 of 1 N to 16 kN, every preset alone and mixed.
 
 use model_tests::muscles::config;

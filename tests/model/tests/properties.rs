@@ -1,4 +1,4 @@
-//! What holds for every valid muscle, whatever its inputs.
+//! Properties of every valid muscle with any inputs.
 
 use model_tests::muscles::{Discrete, Mode, TYPES, built, config, muscles, steps};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Refusals and thresholds at their edges: just inside is taken, just outside is not.
+//! Limits and thresholds at their edges: just inside is accepted, just outside is refused.
 
 use firmware::MUSCLE;
 use vm_nostd::{

@@ -1,4 +1,4 @@
-//! A saved state says whose it is: another muscle, mode, time step or arithmetic refuses it by name.
+//! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it by name.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode};

@@ -1,4 +1,4 @@
-//! The inverse under FES by itself: a force is found again, the nearest is named of one that cannot be held.
+//! The inverse under FES: a force is found again, and an unreachable one gives the nearest.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{TYPES, config, muscles};
