@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::{env, fs};
 
-/// Of the stimulator's 128 KiB of RAM, what is for its stack; `vm stack` says how much of it is used.
+/// Of the stimulator's 128 KiB of RAM, what is for its stack; `vm stack` says how much of it is
+/// used.
 const STACK_BYTES: u32 = 40 * 1024;
 
 fn main() {

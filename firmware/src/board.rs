@@ -43,7 +43,8 @@ pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
 /// Current source: 50 mA at 4095 counts.
 pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
-/// Baud rate of the link. A byte takes longer than the tick that may delay its interrupt: none is lost.
+/// Baud rate of the link. A byte takes longer than the tick that may delay its interrupt: none is
+/// lost.
 const BAUD: u32 = 115_200;
 
 /// Core clock of the part and of the emulator, Hz.
@@ -73,8 +74,8 @@ pub struct Board {
     pub boot: Fault,
 }
 
-/// Whether this is QEMU, whose reset and clock control reads 0. On a real part a bit of the PLL configuration
-/// is always 1.
+/// Whether this is QEMU, whose reset and clock control reads 0. On a real part a bit of the PLL
+/// configuration is always 1.
 fn is_emulated(rcc: &RCC) -> bool {
     rcc.cr().read().bits() == 0 && rcc.pllcfgr().read().bits() == 0
 }
@@ -139,7 +140,8 @@ impl Board {
             Config::default().baudrate(BAUD.bps()),
             &mut rcc,
         );
-        // Refused only for a rate that this clock cannot make; the watchdog is not fed then, and nothing runs.
+        // Refused only for a rate that this clock cannot make; the watchdog is not fed then, and
+        // nothing runs.
         let (to_host, mut from_host) = serial.map_or_else(|_| reset(), Serial::split);
         from_host.listen();
 
@@ -206,8 +208,8 @@ pub fn reset() -> ! {
 
 /// Timer of the schedule's steps.
 ///
-/// Its reload is buffered: a value written during a step takes effect at its end, so that the delay of an
-/// interrupt does not change the duration of a phase.
+/// Its reload is buffered: a value written during a step takes effect at its end, so that the delay
+/// of an interrupt does not change the duration of a phase.
 pub struct PulseTimer {
     timer: TIM2,
     is_emulated: bool,
@@ -223,8 +225,8 @@ impl PulseTimer {
         // Counts µs; 16 bits are enough for either.
         timer.psc().write(|w| w.psc().set((clock / 1_000_000 - 1) as u16));
         if is_emulated {
-            // To every alarm, QEMU's adds the time at which its count was 0. That stays the time of reset if the
-            // count goes on from the ns there were before.
+            // To every alarm, QEMU's adds the time at which its count was 0. That stays the time of
+            // reset if the count goes on from the ns there were before.
             timer.cnt().write(|w| w.cnt().set(count / 1000));
         }
         timer.arr().write(|w| w.arr().set(Pulses::<Converter, Pin>::FIRST_US - 1));

@@ -2,7 +2,8 @@
 
 use crate::limits::{LONGEST_TICK_US, SHORTEST_TICK_US};
 
-/// Tick time, µs: `VM_TICK_US` at build time, 500 to 2,000, by default 1,000. Other values do not build.
+/// Tick time, µs: `VM_TICK_US` at build time, 500 to 2,000, by default 1,000. Other values do not
+/// build.
 pub const TICK_US: u32 = match option_env!("VM_TICK_US") {
     None => 1000,
     Some(text) => match u32::from_str_radix(text, 10) {

@@ -20,8 +20,8 @@ pub struct Controller<'q> {
 }
 
 impl<'q> Controller<'q> {
-    /// Disarmed, with a latched fault (see [`Supervisor::new`]), for a tick time in µs. An error if the limits do not
-    /// fit tick and scale, see [`Limits::validate`].
+    /// Disarmed, with a latched fault (see [`Supervisor::new`]), for a tick time in µs. An error if
+    /// the limits do not fit tick and scale, see [`Limits::validate`].
     pub fn new(
         limits: Limits,
         tick_us: u32,
@@ -85,8 +85,8 @@ impl<'q> Controller<'q> {
         self.scale.corrupt(|scale| scale.full_scale_ua /= 2);
     }
 
-    /// The hard tick. Returns false if stimulation is not allowed; the pulse timer's interrupt must then be triggered
-    /// and makes everything neutral.
+    /// The hard tick. Returns false if stimulation is not allowed; the pulse timer's interrupt must
+    /// then be triggered and makes everything neutral.
     #[must_use]
     pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
         let scale = self.scale.get().copied();

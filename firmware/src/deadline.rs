@@ -25,7 +25,8 @@ impl Deadline {
         self.in_time = since_due <= self.latest_start;
     }
 
-    /// It ends this many counts after it was due, or after the next one was due. False if it was late.
+    /// It ends this many counts after it was due, or after the next one was due. False if it was
+    /// late.
     pub fn end(&mut self, since_due: u32, next_is_due: bool) -> bool {
         self.in_time &= !next_is_due;
         self.late = self.late.saturating_add(u32::from(!self.in_time));
@@ -33,7 +34,8 @@ impl Deadline {
         self.in_time
     }
 
-    /// Longest time from a tick's due time to its end, µs; [`u32::MAX`] after a tick that overran the next.
+    /// Longest time from a tick's due time to its end, µs; [`u32::MAX`] after a tick that overran
+    /// the next.
     pub fn longest_us(&self) -> u32 {
         match self.longest {
             u32::MAX => u32::MAX,

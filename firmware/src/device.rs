@@ -73,8 +73,8 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// A tick that began `since_due` counts of its timer after it was due. Returns false if no current may flow: the
-    /// pulse timer's interrupt must be triggered first.
+    /// A tick that began `since_due` counts of its timer after it was due. Returns false if no
+    /// current may flow: the pulse timer's interrupt must be triggered first.
     ///
     /// Bounded, without waiting. Deadline, including [`finish`](Self::finish): the next tick.
     #[must_use]
@@ -157,8 +157,8 @@ impl<'q> Device<'q> {
         Some(requested)
     }
 
-    /// Discards requests and waiting rows after a fault: arming must not resume them. Discarded rows are missing
-    /// among the traces.
+    /// Discards requests and waiting rows after a fault: arming must not resume them. Discarded
+    /// rows are missing among the traces.
     fn forget(&mut self) {
         self.forget_requests();
         while self.ends.rows.dequeue().is_some() {
@@ -171,8 +171,8 @@ impl<'q> Device<'q> {
         self.demand = Aged::new(NO_DEMAND);
     }
 
-    /// The tick ends, `since_due` counts of its timer after it was due, or after the next tick was due if so. Returns
-    /// false if no current may flow, as [`tick`](Self::tick).
+    /// The tick ends, `since_due` counts of its timer after it was due, or after the next tick was
+    /// due if so. Returns false if no current may flow, as [`tick`](Self::tick).
     #[must_use]
     pub fn finish(&mut self, since_due: u32, next_is_due: bool) -> bool {
         self.in_time = self.deadline.end(since_due, next_is_due);
@@ -185,7 +185,8 @@ impl<'q> Device<'q> {
 
     /// Executes the link's order, if there is one.
     fn obey(&mut self) {
-        // Without room for its outcome an order waits; the link takes an outcome before it gives an order.
+        // Without room for its outcome an order waits; the link takes an outcome before it gives an
+        // order.
         if self.ends.outcomes.ready()
             && let Some(order) = self.ends.orders.dequeue()
         {
@@ -249,8 +250,8 @@ impl<'q> Device<'q> {
         }
     }
 
-    /// Steps the muscles by the next row, if there is one and room for its outputs. A row whose checksum fails steps
-    /// nothing.
+    /// Steps the muscles by the next row, if there is one and room for its outputs. A row whose
+    /// checksum fails steps nothing.
     fn advance(&mut self) {
         if !self.ends.traces.ready() {
             return;

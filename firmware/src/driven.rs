@@ -54,8 +54,9 @@ pub(crate) struct Driven {
 }
 
 impl Driven {
-    /// Builds a muscle at rest on [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path); the error has
-    /// field, value and limit.
+    /// Builds a muscle at rest on
+    /// [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path); the error has field,
+    /// value and limit.
     pub(crate) fn build(upload: &Upload, step: TimeStep) -> Result<Self, Refusal<'static>> {
         let electrode =
             upload.electrode.map(|electrode| checked(upload.mode, electrode)).transpose()?;
@@ -77,7 +78,8 @@ impl Driven {
         Ok(driven)
     }
 
-    /// Puts it at rest on a path (m). An error if the path is out of range; the muscle is unchanged.
+    /// Puts it at rest on a path (m). An error if the path is out of range; the muscle is
+    /// unchanged.
     pub(crate) fn rest(&mut self, path_length: f32) -> Result<(), Refusal<'static>> {
         match &mut self.muscle {
             BankedMuscle::Continuous(muscle, state) => *state = muscle.rest(path_length)?,
@@ -118,7 +120,8 @@ impl Driven {
         self.electrode.as_ref().map(|(electrode, _)| electrode.channel)
     }
 
-    /// Stimulation for an input: pulses at its frequency, of the amplitude that recruits its activation.
+    /// Stimulation for an input: pulses at its frequency, of the amplitude that recruits its
+    /// activation.
     pub(crate) fn demand(&self, inputs: &RowInputs) -> Demand {
         let Some((electrode, curve)) = self.electrode.as_ref().filter(|_| !self.lost) else {
             return Demand::Nothing;

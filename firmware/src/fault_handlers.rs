@@ -1,7 +1,8 @@
-//! What the core cannot go on after ends in a reset, and so in neutral, whatever state the stack is in.
+//! What the core cannot go on after ends in a reset, and so in neutral, whatever state the stack is
+//! in.
 //!
-//! The stack is below everything else in RAM: what overflows it meets no memory, and the core's fault handler is called
-//! with a stack pointer that is of no use. Neither handler uses it.
+//! The stack is below everything else in RAM: what overflows it meets no memory, and the core's
+//! fault handler is called with a stack pointer that is of no use. Neither handler uses it.
 #![allow(unsafe_code)]
 
 use core::arch::naked_asm;

@@ -1,14 +1,15 @@
 //! Flash behind its controller (RM0090 3.6, DS8626).
 //!
-//! Error flags are cleared before an operation, which fails otherwise. Every wait is bounded. Caches are flushed after
-//! erasing and writing.
+//! Error flags are cleared before an operation, which fails otherwise. Every wait is bounded.
+//! Caches are flushed after erasing and writing.
 
 use crate::watchdog::MOST_CHANGE_MS;
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Longest erase of a sector of 128 KB at x8, ms (2,000 typically). `stm32f4xx-hal` uses x8, which any supply allows.
+/// Longest erase of a sector of 128 KB at x8, ms (2,000 typically). `stm32f4xx-hal` uses x8, which
+/// any supply allows.
 pub const MOST_ERASE_MS: u32 = 4_000;
 /// Longest write of a byte, µs (16 typically).
 const MOST_WRITE_US: u32 = 100;
@@ -82,7 +83,8 @@ impl<C: FlashController> Flash<C> {
         &mut self.0
     }
 
-    /// Waits for a condition for at most `ms`. A stopped clock does not block: each poll counts as at least one count.
+    /// Waits for a condition for at most `ms`. A stopped clock does not block: each poll counts as
+    /// at least one count.
     fn within(&self, ms: u32, is_so: impl Fn(&C) -> bool) -> Result<(), FlashError> {
         let most = ms.saturating_mul(C::COUNTS_PER_MS);
         let begun = self.0.counts();

@@ -45,8 +45,8 @@ impl Gate {
         self.renewed.set(true);
     }
 
-    /// Whether the permission was renewed since the last call. Only for the pulse timer, which the tick cannot
-    /// interrupt.
+    /// Whether the permission was renewed since the last call. Only for the pulse timer, which the
+    /// tick cannot interrupt.
     pub(crate) fn take_renewed(&self) -> bool {
         let renewed = self.renewed.is_raised();
         self.renewed.set(false);
@@ -65,7 +65,8 @@ impl Gate {
         self.heard.set(true);
     }
 
-    /// Whether the host was heard since the last call. Only for the tick, which the link cannot interrupt.
+    /// Whether the host was heard since the last call. Only for the tick, which the link cannot
+    /// interrupt.
     pub(crate) fn take_heard(&self) -> bool {
         let heard = self.heard.is_raised();
         self.heard.set(false);

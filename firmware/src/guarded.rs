@@ -1,7 +1,7 @@
 //! A value with its checksum: a flipped bit becomes a fault before it becomes a current.
 //!
-//! It is made where a value is known to be correct (after the frame's CRC, after validation) and checked at every
-//! use.
+//! It is made where a value is known to be correct (after the frame's CRC, after validation) and
+//! checked at every use.
 
 use vm_nostd::Checksum;
 

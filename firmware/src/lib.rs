@@ -2,11 +2,13 @@
 //!
 //! Three levels, each of which interrupts the next and never waits for it:
 //!
-//! 1. pulse timer: [`Pulses`] outputs the pulse that is due in [`Schedule`], while the tick permits it;
+//! 1. pulse timer: [`Pulses`] outputs the pulse that is due in [`Schedule`], while the tick permits
+//!    it;
 //! 2. hard tick: [`Device`] steps the muscles and supervises;
 //! 3. link: [`Server`] takes a host's requests and returns the muscles' outputs.
 //!
-//! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues of [`Lines`].
+//! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues
+//! of [`Lines`].
 #![no_std]
 
 #[cfg(any(test, feature = "explore"))]

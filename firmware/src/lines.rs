@@ -14,7 +14,8 @@ use vm_nostd::Checksum;
 /// Capacity of the queues of rows and of traces; a queue keeps one place free.
 const WAITING: usize = 64;
 
-/// Muscles of all places. Tick and link exchange two banks: a muscle is too large for a queue and for the stack.
+/// Muscles of all places. Tick and link exchange two banks: a muscle is too large for a queue and
+/// for the stack.
 pub(crate) type Bank = [Option<Driven>; MUSCLES];
 
 /// An order from link to tick.

@@ -1,10 +1,11 @@
 //! The link to a host: messages in frames over any line that carries bytes.
 //!
-//! A frame is COBS of (version, sequence number, message by postcard, CRC-32), and a zero. The CRC begins with the
-//! number of the session, made of a random number of the device's and a nonce of the host's (see
-//! [`Randomness`](crate::Randomness)); it keeps out frames of other sessions, but does not authenticate the sender. Only a
-//! whole frame of this version with a good checksum, the next sequence number and a complete message is acted
-//! upon; everything else is counted and answered with a [`LinkError`].
+//! A frame is COBS of (version, sequence number, message by postcard, CRC-32), and a zero. The CRC
+//! begins with the number of the session, made of a random number of the device's and a nonce of
+//! the host's (see [`Randomness`](crate::Randomness)); it keeps out frames of other sessions, but
+//! does not authenticate the sender. Only a whole frame of this version with a good checksum, the
+//! next sequence number and a complete message is acted upon; everything else is counted and
+//! answered with a [`LinkError`].
 
 mod frame;
 mod message;

@@ -146,12 +146,14 @@ mod app {
     fn receive(context: receive::Context) {
         let receive::LocalResources { from_host, received, .. } = context.local;
         if let Some(byte) = from_host.read() {
-            // A host that does not wait for answers loses what it sends; the frame's checksum tells it.
+            // A host that does not wait for answers loses what it sends; the frame's checksum tells
+            // it.
             let _full = received.enqueue(byte);
         }
     }
 
-    /// Link and log. It logs only while disarmed, because logging masks the pulse timer's interrupt.
+    /// Link and log. It logs only while disarmed, because logging masks the pulse timer's
+    /// interrupt.
     #[idle(local = [arrived, to_host, server])]
     fn idle(context: idle::Context) -> ! {
         let idle::LocalResources { arrived, to_host, server, .. } = context.local;

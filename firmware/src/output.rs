@@ -1,12 +1,13 @@
-//! Output stage over `embedded-hal`: a current source set by a converter on SPI, a bridge that reverses the
-//! current, and a switch per channel.
+//! Output stage over `embedded-hal`: a current source set by a converter on SPI, a bridge that
+//! reverses the current, and a switch per channel.
 
 use crate::schedule::Step;
 use crate::waveform::{Direction, Phase};
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
-/// Pins of the bridge. With both low, the electrodes are shorted to each other, and residual charge decays.
+/// Pins of the bridge. With both low, the electrodes are shorted to each other, and residual charge
+/// decays.
 #[derive(Debug)]
 pub struct Bridge<P> {
     /// High for the cathodic phase: current out of the tissue at the working electrode.
@@ -83,8 +84,8 @@ impl<D: SpiDevice, P: OutputPin, const CHANNELS: usize> OutputStage<D, P, CHANNE
         self.connected.is_some()
     }
 
-    /// No current, both sides of the bridge low, and the channel stays connected: residual charge of its
-    /// electrodes decays. [`neutral`](Self::neutral) must follow.
+    /// No current, both sides of the bridge low, and the channel stays connected: residual charge
+    /// of its electrodes decays. [`neutral`](Self::neutral) must follow.
     pub fn discharge(&mut self) -> Result<(), OutputError> {
         self.connected = None;
         let converter = self.convert(0);

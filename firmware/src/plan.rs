@@ -9,14 +9,15 @@ use crate::waveform::Pulse;
 use heapless::spsc::Queue;
 use vm_nostd::Checksum;
 
-/// Largest share of time for pulses of all channels, thousandths; the rest lets late pulses catch up.
+/// Largest share of time for pulses of all channels, thousandths; the rest lets late pulses catch
+/// up.
 const MOST_LOAD: u32 = 900;
 
 /// Queue of plans from tick to pulse timer.
 pub type PlanQueue = Queue<Guarded<Plan<CHANNELS>>, PLAN_QUEUE>;
 
-/// Capacity of that queue: one plan per tick during the longest pulse and the step before it, when the pulse timer does
-/// not read it. A queue keeps one place free.
+/// Capacity of that queue: one plan per tick during the longest pulse and the step before it, when
+/// the pulse timer does not read it. A queue keeps one place free.
 const PLAN_QUEUE: usize = {
     let unread_us = LONGEST_PULSE_US + Step::LONGEST_US;
     unread_us.div_ceil(SHORTEST_TICK_US) as usize + 2
@@ -70,8 +71,9 @@ impl<const CHANNELS: usize> Plan<CHANNELS> {
         self.trains.iter().all(Option::is_none)
     }
 
-    /// The plan of each channel's stimulus, with rise and frequency within the limits. The error has field, value and
-    /// limit, if the stimulator cannot do one of them or not all of them one at a time.
+    /// The plan of each channel's stimulus, with rise and frequency within the limits. The error
+    /// has field, value and limit, if the stimulator cannot do one of them or not all of them one
+    /// at a time.
     pub fn new(
         wanted: &[Option<Stimulus>; CHANNELS],
         scale: &Scale,

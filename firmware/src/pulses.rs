@@ -67,8 +67,9 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// The timer has expired and already counts the next step: outputs that step and returns the duration of the step
-    /// *after* it, µs, for the timer's buffer. The hardware, not this function, ends a phase.
+    /// The timer has expired and already counts the next step: outputs that step and returns the
+    /// duration of the step *after* it, µs, for the timer's buffer. The hardware, not this
+    /// function, ends a phase.
     ///
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
@@ -136,8 +137,8 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         }
     }
 
-    /// The timer expired again before its interrupt had finished: a phase of a pulse is too long. Between pulses that is
-    /// allowed.
+    /// The timer expired again before its interrupt had finished: a phase of a pulse is too long.
+    /// Between pulses that is allowed.
     pub fn overran(&mut self) {
         if self.pulsing {
             self.gate.set_late(true);

@@ -12,8 +12,8 @@ impl<R: Randomness + ?Sized> Randomness for &mut R {
     }
 }
 
-/// Replacement without a generator, as in QEMU: the polls since boot. Repeating a boot to the poll repeats the
-/// number; only the host's nonce is then new.
+/// Replacement without a generator, as in QEMU: the polls since boot. Repeating a boot to the poll
+/// repeats the number; only the host's nonce is then new.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PollCount;
 
@@ -50,8 +50,8 @@ const MOST_POLLS: u32 = 10_000;
 /// Restarts for one number before the generator counts as broken.
 const MOST_RESTARTS: u32 = 8;
 
-/// Numbers of a noise generator, per RM0090 24.3.1: the first number after a start is only compared with, no
-/// number may repeat the last, and a clock or noise error restarts it.
+/// Numbers of a noise generator, per RM0090 24.3.1: the first number after a start is only compared
+/// with, no number may repeat the last, and a clock or noise error restarts it.
 #[derive(Clone, Debug)]
 pub struct Noise<G> {
     generator: G,

@@ -27,8 +27,8 @@ pub trait Inputs<S: Scalar> {
 
 /// Sink of results.
 pub trait Record {
-    /// Takes the [`frame_words`] words of a tick: state and output of the continuous muscle, then of the
-    /// FES muscle. Must not block.
+    /// Takes the [`frame_words`] words of a tick: state and output of the continuous muscle, then
+    /// of the FES muscle. Must not block.
     fn record(&mut self, words: impl Iterator<Item = u32>);
 }
 

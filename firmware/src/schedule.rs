@@ -1,11 +1,12 @@
 //! Schedule of pulses: one at a time, earliest due first, none cut short.
 //!
-//! [`Schedule::advance`] returns the next step and its duration for a hardware timer. A pulse that is due while another
-//! runs starts after it: it waits for at most one pulse of every other channel. The next pulse is due as if the last
-//! had been on time, but no closer than half a period or than the frequency limit allows.
+//! [`Schedule::advance`] returns the next step and its duration for a hardware timer. A pulse that
+//! is due while another runs starts after it: it waits for at most one pulse of every other
+//! channel. The next pulse is due as if the last had been on time, but no closer than half a period
+//! or than the frequency limit allows.
 //!
-//! Amplitudes rise from zero, by at most the plan's rise per pulse. Only pulses that were put out count, not how often
-//! a host asks.
+//! Amplitudes rise from zero, by at most the plan's rise per pulse. Only pulses that were put out
+//! count, not how often a host asks.
 
 use crate::guarded::Guarded;
 use crate::limits::SHORTEST_TICK_US;
@@ -23,13 +24,15 @@ pub struct Step {
 }
 
 impl Step {
-    /// Longest step, µs: a quarter of the shortest tick. After each step plans and permission are checked.
+    /// Longest step, µs: a quarter of the shortest tick. After each step plans and permission are
+    /// checked.
     pub const LONGEST_US: u32 = SHORTEST_TICK_US / 4;
     /// Nothing for a while.
     pub const IDLE: Self = Self { output: None, duration_us: Self::LONGEST_US };
 }
 
-/// Pulse history of a channel. It outlasts a halt, so that switching off and on cannot exceed the frequency.
+/// Pulse history of a channel. It outlasts a halt, so that switching off and on cannot exceed the
+/// frequency.
 #[derive(Clone, Copy, Debug)]
 struct Rhythm {
     /// Time until the next pulse may come, µs; negative when it may.
@@ -48,7 +51,8 @@ impl Rhythm {
     /// Without a pulse: due at once.
     const NONE: Self = Self { due_us: 0, period_us: 0, since_us: i32::MAX, counts: 0, width_us: 0 };
 
-    /// Most counts of the next pulse of a width. A wider pulse starts weaker, because charge stimulates.
+    /// Most counts of the next pulse of a width. A wider pulse starts weaker, because charge
+    /// stimulates.
     fn reach(&self, rise: u16, width_us: u16) -> u16 {
         let counts = if width_us > self.width_us {
             let charge = u32::from(self.counts) * u32::from(self.width_us);
@@ -107,8 +111,9 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
             for (rhythm, (train, before)) in self.rhythms.iter_mut().zip(trains) {
                 match train {
                     None => rhythm.counts = 0,
-                    // An unchanged train continues. A pulse of a new train comes no sooner after the last
-                    // than its own period: else strong, rare pulses could follow weak, frequent ones.
+                    // An unchanged train continues. A pulse of a new train comes no sooner after
+                    // the last than its own period: else strong, rare pulses could follow weak,
+                    // frequent ones.
                     Some(Train { period_us, .. }) => {
                         // Periods are ten seconds at most.
                         let period_us = *period_us as i32;
@@ -212,8 +217,8 @@ impl<const CHANNELS: usize> Schedule<CHANNELS> {
         match first {
             Some((channel, train, rhythm)) if rhythm.due_us <= 0 => {
                 let pulse = train.pulse(rhythm.reach(plan.rise, train.width_us));
-                // A late pulse is made up for in part: pulses are never closer than half a period, or than
-                // the frequency limit allows.
+                // A late pulse is made up for in part: pulses are never closer than half a period,
+                // or than the frequency limit allows.
                 let period_us = train.period_us as i32;
                 let closest_us = (period_us / 2).max(plan.least_period_us as i32);
                 rhythm.due_us = (rhythm.due_us + period_us).max(closest_us);

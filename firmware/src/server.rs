@@ -340,7 +340,8 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     }
 }
 
-/// Session number from the device's random number and the host's nonce; never 0, and not the last one.
+/// Session number from the device's random number and the host's nonce; never 0, and not the last
+/// one.
 fn session_number(random: u32, nonce: u32, before: SessionNumber) -> SessionNumber {
     let number = (random ^ nonce) | 1;
     if number == before { number.wrapping_add(2) } else { number }

@@ -1,7 +1,8 @@
-//! What one level shares with another that interrupts it: flags and queues, each access of which goes through here.
+//! What one level shares with another that interrupts it: flags and queues, each access of which
+//! goes through here.
 //!
-//! With the feature `explore`, a test decides before each access whether a higher level runs there; between
-//! accesses it makes no difference. Without the feature this compiles to nothing.
+//! With the feature `explore`, a test decides before each access whether a higher level runs there;
+//! between accesses it makes no difference. Without the feature this compiles to nothing.
 
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use heapless::spsc::{Consumer, Producer};

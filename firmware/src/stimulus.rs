@@ -5,7 +5,8 @@ use core::fmt;
 use serde::{Deserialize, Serialize};
 use vm_nostd::Checksum;
 
-/// Shortest phase, µs: the pulse timer's interrupt at its start must set the next phase before its end.
+/// Shortest phase, µs: the pulse timer's interrupt at its start must set the next phase before its
+/// end.
 pub const LEAST_PHASE_US: u32 = 20;
 
 /// Time without current before and after switching, µs, in which converter and switches settle.

@@ -1,8 +1,9 @@
 //! Non-volatile storage in two slots, of which one is always intact.
 //!
-//! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases the older slot,
-//! writes its content and then its header, which makes it the newer one. If power is lost on the way, the other slot
-//! stays valid. After an error, a slot that may not hold its content is invalidated.
+//! A slot is a header (magic, generation, length, CRC-32 of the rest) and a content. Storing erases
+//! the older slot, writes its content and then its header, which makes it the newer one. If power
+//! is lost on the way, the other slot stays valid. After an error, a slot that may not hold its
+//! content is invalidated.
 
 use crate::link::VERSION;
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -74,8 +75,8 @@ impl<'b, F: MultiwriteNorFlash> Slots<'b, F> {
         self.buffer.get(HEADER..HEADER + length)
     }
 
-    /// Stores a content. Until it is complete, and after an error other than [`NotStored::Unknown`], the content before
-    /// stays valid.
+    /// Stores a content. Until it is complete, and after an error other than
+    /// [`NotStored::Unknown`], the content before stays valid.
     pub fn store(&mut self, content: &[u8]) -> Result<(), NotStored> {
         if content.len() > MOST_STORED {
             return Err(NotStored::TooLong);

@@ -85,7 +85,8 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         Ok(())
     }
 
-    /// Builds the muscle of an upload for a place; an error if it is invalid or its channel is taken.
+    /// Builds the muscle of an upload for a place; an error if it is invalid or its channel is
+    /// taken.
     fn checked(&self, index: usize, upload: &Upload) -> Result<Driven, Refusal<'static>> {
         let driven = Driven::build(upload, self.step)?;
         if let Some(channel) = driven.channel() {

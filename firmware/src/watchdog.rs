@@ -1,5 +1,5 @@
-//! Independent watchdog, per RM0090 21.3: registers are written only while no update is pending, and an update
-//! counts when the part reports it.
+//! Independent watchdog, per RM0090 21.3: registers are written only while no update is pending,
+//! and an update counts when the part reports it.
 
 /// Range of its oscillator, Hz (DS8626, LSI).
 const SLOWEST_HZ: u32 = 17_000;
@@ -52,7 +52,8 @@ impl Patience {
 
 /// While current may flow: three of the longest tick times.
 pub const ARMED: Patience = Patience::at_least(6);
-/// While disarmed: longer than flash stalls the core, see [`MOST_STORE_MS`](crate::flash::MOST_STORE_MS).
+/// While disarmed: longer than flash stalls the core, see
+/// [`MOST_STORE_MS`](crate::flash::MOST_STORE_MS).
 pub const DISARMED: Patience = Patience::at_least(crate::flash::MOST_STORE_MS + 100);
 /// Longest update from one to the other, ms.
 pub const MOST_CHANGE_MS: u32 = DISARMED.change_ms();
@@ -91,7 +92,8 @@ pub struct Watchdog<R> {
 }
 
 impl<R: WatchdogRegisters> Watchdog<R> {
-    /// Starts it with the disarmed timeout, for ticks of `tick_us` µs. Polls its registers a limited number of times.
+    /// Starts it with the disarmed timeout, for ticks of `tick_us` µs. Polls its registers a
+    /// limited number of times.
     pub fn start(mut registers: R, tick_us: u32, most_polls: u32) -> Result<Self, Stuck> {
         // Without its oscillator, which this switches on, no change arrives.
         registers.start();
@@ -106,7 +108,8 @@ impl<R: WatchdogRegisters> Watchdog<R> {
         Ok(Self { registers, written: DISARMED, in_force: true, changing_ticks: 0, most_ticks })
     }
 
-    /// A tick has ended in time. Does not wait: one tick begins an update, a later one sees it complete.
+    /// A tick has ended in time. Does not wait: one tick begins an update, a later one sees it
+    /// complete.
     pub fn feed(&mut self, armed: bool) -> Result<(), Stuck> {
         let wanted = if armed { ARMED } else { DISARMED };
         if self.registers.is_changing() {

@@ -1,12 +1,12 @@
 //! A charge-balanced biphasic pulse: the net charge is exactly 0 counts times µs.
 //!
-//! The stimulating phase is cathodic, `counts` for `width`. After the interphase gap, the recharge phase is
-//! `recovery` times weaker and longer. Counts are a multiple of `recovery`, so that both phases have exactly
-//! the same counts times µs.
+//! The stimulating phase is cathodic, `counts` for `width`. After the interphase gap, the recharge
+//! phase is `recovery` times weaker and longer. Counts are a multiple of `recovery`, so that both
+//! phases have exactly the same counts times µs.
 //!
-//! Channel and direction are switched in phases without current before, between and after the two. Each phase
-//! with current begins and ends with one word to the converter, the first action of a step, so that its
-//! duration does not depend on the time of words and switches.
+//! Channel and direction are switched in phases without current before, between and after the two.
+//! Each phase with current begins and ends with one word to the converter, the first action of a
+//! step, so that its duration does not depend on the time of words and switches.
 
 use crate::stimulus::{SETTLE_US, Scale, Stimulus, StimulusError};
 
@@ -30,7 +30,8 @@ pub struct Phase {
     pub duration_us: u16,
 }
 
-/// A pulse: settling, stimulation, interphase gap (its last part reverses the bridge), recharge, settling.
+/// A pulse: settling, stimulation, interphase gap (its last part reverses the bridge), recharge,
+/// settling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pulse {
     /// Phases in order.

@@ -1,5 +1,5 @@
-//! Ticks per second of one core of this machine: `cargo bench`. Machines differ, and are noisy: only
-//! what one run says of one arithmetic relative to another counts.
+//! Ticks per second of one core of this machine: `cargo bench`. Machines differ, and are noisy:
+//! only what one run says of one arithmetic relative to another counts.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use host_sim::link;

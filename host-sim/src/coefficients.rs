@@ -121,8 +121,8 @@ fn find(rows: Vec<(String, Row)>, label: &str) -> Option<Row> {
 
 /// A fibre type from its row; times are converted from ms to s.
 ///
-/// A row with any coefficient of sag (or yield) needs all of them. `TL_ms` (effective length) is the
-/// same in all published types, which is the default.
+/// A row with any coefficient of sag (or yield) needs all of them. `TL_ms` (effective length) is
+/// the same in all published types, which is the default.
 pub fn fiber_type(row: &Row) -> Result<FiberType, RowError> {
     let get = |name: &'static str| row.get(name).copied().ok_or(RowError::Missing(name));
     let seconds = |name: &'static str| Ok::<f64, RowError>(get(name)? * 1e-3);

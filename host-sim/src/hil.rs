@@ -1,4 +1,5 @@
-//! Hardware in the loop: a muscle runs on a device over the link; its bits are compared with the host's.
+//! Hardware in the loop: a muscle runs on a device over the link; its bits are compared with the
+//! host's.
 
 mod client;
 mod emulated;

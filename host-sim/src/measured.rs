@@ -1,6 +1,8 @@
-//! Real muscle: recordings that no one here made, the model fitted to some of them and held against the rest.
+//! Real muscle: recordings that no one here made, the model fitted to some of them and held against
+//! the rest.
 //!
-//! The definitions, what is fitted to what, are frozen in `data/measured`; the recordings are read from a folder.
+//! The definitions, what is fitted to what, are frozen in `data/measured`; the recordings are read
+//! from a folder.
 
 use crate::fit::{Fit, FitError, Role, Search, Start, Trials, fit};
 use crate::reference::Muscle;
@@ -22,8 +24,8 @@ const KNOWN: [Known; 2] = [
         folder: "krylow_sandercock_1997",
         muscle: include_str!("../data/measured/krylow_sandercock_1997.muscle.toml"),
         trials: include_str!("../data/measured/krylow_sandercock_1997.trials.toml"),
-        // Six amplitudes, three Hill models fitted by their morphometry: Millard et al., J. Biomech. Eng. 135
-        // (2013) 021005.
+        // Six amplitudes, three Hill models fitted by their morphometry: Millard et al., J.
+        // Biomech. Eng. 135 (2013) 021005.
         published: Some([3.3, 8.9]),
     },
     Known {
@@ -134,7 +136,8 @@ struct Found {
     published: Option<[f64; 2]>,
 }
 
-/// Measures the model against every set of recordings in `folder`; `left_out` are the versions of the model.
+/// Measures the model against every set of recordings in `folder`; `left_out` are the versions of
+/// the model.
 pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<Board, FitError> {
     let mut board = Board::default();
     let found = find(folder, &mut board.skipped)?;
@@ -214,7 +217,8 @@ impl Found {
     }
 }
 
-/// Mean of the mean absolute errors of the rows of a set and a role; not a number where there are none.
+/// Mean of the mean absolute errors of the rows of a set and a role; not a number where there are
+/// none.
 pub fn mean(board: &Board, dataset: &str, role: Option<Role>, left_out: LeftOut) -> f64 {
     let of_interest = |row: &&Row| {
         row.dataset == dataset

@@ -1,8 +1,9 @@
 //! Human muscles by name: published morphometry, and the assumptions that complete it.
 //!
-//! Sources: gait2392 (Delp et al., IEEE Trans. Biomed. Eng. 37 (1990) 757-767; Yamaguchi & Zajac 1989;
-//! Anderson & Pandy 1999) and arm26 (after Holzbaur, Murray & Delp, Ann. Biomed. Eng. 33 (2005) 829-840), both
-//! CC BY 3.0 of the OpenSim project. Slow fractions: Edgerton, Smith & Simpson, Histochem. J. 7 (1975) 259-266.
+//! Sources: gait2392 (Delp et al., IEEE Trans. Biomed. Eng. 37 (1990) 757-767; Yamaguchi & Zajac
+//! 1989; Anderson & Pandy 1999) and arm26 (after Holzbaur, Murray & Delp, Ann. Biomed. Eng. 33
+//! (2005) 829-840), both CC BY 3.0 of the OpenSim project. Slow fractions: Edgerton, Smith &
+//! Simpson, Histochem. J. 7 (1975) 259-266.
 
 use crate::coefficients;
 use crate::muscle_file::{self, MuscleFileError, NamedMuscle};
@@ -122,13 +123,14 @@ impl HumanMuscle {
     }
 }
 
-/// Largest error of the steady force at full activation, % of F0, over fascicles of 0.7 to 1.3 L_ce0.
+/// Largest error of the steady force at full activation, % of F0, over fascicles of 0.7 to 1.3
+/// L_ce0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PennationCost {
     /// On the same path with the same F0.
     pub as_it_stands: f64,
-    /// With F0 times the cosine of the angle, and the path longer by the missing projection of the fascicles at
-    /// L_ce0, as a fit of force and path would find.
+    /// With F0 times the cosine of the angle, and the path longer by the missing projection of the
+    /// fascicles at L_ce0, as a fit of force and path would find.
     pub made_up_for: f64,
 }
 

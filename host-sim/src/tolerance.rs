@@ -39,8 +39,8 @@ pub fn table() -> BTreeMap<Key, Tolerance> {
         .collect()
 }
 
-/// Promised largest and, where promised, root-mean-square error of a row, % of F0. It is independent of
-/// the row's tolerance.
+/// Promised largest and, where promised, root-mean-square error of a row, % of F0. It is
+/// independent of the row's tolerance.
 pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
     let [scenario, _, arithmetic, _] = key;
     if arithmetic == "reference" {
@@ -54,7 +54,8 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
     if rings(scenario) { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
 }
 
-/// Whether the muscle rings on its tendon in a scenario: a slack tendon snaps taut, or the path jerks.
+/// Whether the muscle rings on its tendon in a scenario: a slack tendon snaps taut, or the path
+/// jerks.
 pub fn rings(scenario: &str) -> bool {
     ["passive_length", "velocity_kinks"].iter().any(|name| scenario.starts_with(name))
 }

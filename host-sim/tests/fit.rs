@@ -1,5 +1,5 @@
-//! `vm fit`: what went into a recording is found again; what is wrong with a recording is named by file, line and
-//! column, and nothing is written.
+//! `vm fit`: what went into a recording is found again; what is wrong with a recording is named by
+//! file, line and column, and nothing is written.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::muscle_file;
@@ -33,8 +33,8 @@ fn noise(index: usize) -> f64 {
     ((bits >> 11) as f64 * 2_f64.powi(-53) - 0.5) * 12_f64.sqrt()
 }
 
-/// The recording of the example: made by the reference of a stronger muscle on another path, every 7 ms, with 1 % of
-/// F0 of noise.
+/// The recording of the example: made by the reference of a stronger muscle on another path, every
+/// 7 ms, with 1 % of F0 of noise.
 fn recording() -> String {
     let mut muscle = muscle_file::parse(MUSCLE, Path::new("m.toml")).expect("a muscle").muscle;
     muscle.mass *= FORCE / muscle.f0();

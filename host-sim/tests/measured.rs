@@ -1,5 +1,5 @@
-//! `vm measured`: sets of recordings that bring their definition along, those that are missing, and, where their
-//! folder is given, those of real muscle.
+//! `vm measured`: sets of recordings that bring their definition along, those that are missing,
+//! and, where their folder is given, those of real muscle.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::fit::{Role, Search};

@@ -171,8 +171,8 @@ impl Machine {
         }
     }
 
-    /// Acknowledges the latched fault, arms, and gives pulses for a while; then sends the script. Returns the report before
-    /// it, and the answers.
+    /// Acknowledges the latched fault, arms, and gives pulses for a while; then sends the script.
+    /// Returns the report before it, and the answers.
     ///
     /// In one script, because the time between two scripts is arbitrary.
     pub fn stimulated(&mut self, latched: Fault, then: &[Request]) -> (Report, Vec<Said>) {
@@ -190,7 +190,8 @@ impl Machine {
         (report, after)
     }
 
-    /// Settled pins. Pulses come every 10 ms of the machine's time, which may be slow on a busy host.
+    /// Settled pins. Pulses come every 10 ms of the machine's time, which may be slow on a busy
+    /// host.
     pub fn pins_at_last(&self) -> Pins {
         let started = Instant::now();
         let mut pins = self.pins();

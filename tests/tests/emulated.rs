@@ -1,7 +1,8 @@
-//! The stimulator as it would be flashed, in QEMU: the host's bits over its USART, and the main faults.
+//! The stimulator as it would be flashed, in QEMU: the host's bits over its USART, and the main
+//! faults.
 //!
-//! Requests of a fault's script wait in the line before the firmware looks for them: time is its own, and does not
-//! depend on how fast this host is.
+//! Requests of a fault's script wait in the line before the firmware looks for them: time is its
+//! own, and does not depend on how fast this host is.
 
 use firmware::link::{Readings, Report, Request};
 use firmware::safety::{CHANNELS, Fault, NotArmed, State};
@@ -81,7 +82,8 @@ fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
         let Said::Report(after) = said[1] else { panic!("{said:?}") };
         assert_eq!(after.state, State::Latched(fault), "{after:?}");
         assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
-        // In the report that follows it. How many ticks that takes depends on how fast this host sends it.
+        // In the report that follows it. How many ticks that takes depends on how fast this host
+        // sends it.
         assert!(after.ticks > before.ticks);
         assert_eq!((after.late, after.frames.broken), (0, 0), "{fault:?}: {after:?}");
         // There were pulses; now there is no way for a current, and none is opened again.
@@ -120,7 +122,8 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     let (address, size) = symbol(&image, "local_init_banks");
     let mut debugger = port.attach();
     let memory = debugger.read(address, size);
-    // Tendon extension, velocity and path lie one behind the other, in the bank of the tick and maybe in the other.
+    // Tendon extension, velocity and path lie one behind the other, in the bank of the tick and
+    // maybe in the other.
     let pattern: Vec<u8> = words[..3].iter().flat_map(|word| word.to_le_bytes()).collect();
     let found: Vec<usize> = (0..memory.len() - pattern.len())
         .filter(|&at| memory[at..].starts_with(&pattern))
@@ -154,8 +157,9 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     assert!(machine.pins().closed > 10);
 }
 
-/// How often the bridge was closed when a debugger stops a busy machine, and once it has gone on, with an instruction
-/// in place of the tick's first one if there is to be one; both while a host is still heard.
+/// How often the bridge was closed when a debugger stops a busy machine, and once it has gone on,
+/// with an instruction in place of the tick's first one if there is to be one; both while a host is
+/// still heard.
 fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     let port = Port::free();
     let mut machine = Machine::start(image, port.arguments());
@@ -177,8 +181,8 @@ fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     (before, pins.closed)
 }
 
-/// How often the bridge can be closed, at most, in so many ticks, less than the time between two pulses of a channel:
-/// twice for a pulse, and each channel's comes behind another's.
+/// How often the bridge can be closed, at most, in so many ticks, less than the time between two
+/// pulses of a channel: twice for a pulse, and each channel's comes behind another's.
 fn closed_in(ticks: u32) -> u32 {
     let one_after_another = (ticks * TICK_US).div_ceil(stimulus(10_000).duration_us());
     2 * one_after_another.min(CHANNELS as u32)
@@ -188,7 +192,8 @@ fn closed_in(ticks: u32) -> u32 {
 #[test]
 fn a_tick_that_never_ends_leaves_no_current_on_the_emulated_chip() {
     let Some(image) = image() else { return };
-    // Without the hang, pulses go on for as long as the host is heard, and a tenth of a second more.
+    // Without the hang, pulses go on for as long as the host is heard, and a tenth of a second
+    // more.
     let (before, after) = closed_around(&image, None);
     assert!(before > 20 && after > before + 40, "{before}, {after}");
     // With it, there is a tick that had begun, and two ticks' patience.
@@ -196,8 +201,8 @@ fn a_tick_that_never_ends_leaves_no_current_on_the_emulated_chip() {
     assert!(before > 20 && after <= before + closed_in(3), "{before}, {after}");
 }
 
-/// An instruction that is none where the tick begins: the core's fault handler starts the chip again, and everything is
-/// off at boot.
+/// An instruction that is none where the tick begins: the core's fault handler starts the chip
+/// again, and everything is off at boot.
 #[test]
 fn a_fault_of_the_core_leaves_no_current_on_the_emulated_chip() {
     let Some(image) = image() else { return };

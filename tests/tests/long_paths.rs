@@ -1,5 +1,5 @@
-//! The longest path scales the parallel elastic element and is no limit: paths are accepted up to the limit of an
-//! equation.
+//! The longest path scales the parallel elastic element and is no limit: paths are accepted up to
+//! the limit of an equation.
 
 use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};

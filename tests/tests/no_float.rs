@@ -1,5 +1,5 @@
-//! The tick in fixed point needs no floating point, in hardware or software, and no 64-bit division: read from
-//! the images of all three cores.
+//! The tick in fixed point needs no floating point, in hardware or software, and no 64-bit
+//! division: read from the images of all three cores.
 //!
 //! Without a target's library these tests print SKIPPED.
 

@@ -40,8 +40,8 @@ fn steady_force(units: Option<usize>, activation: f64, arithmetic: Arithmetic) -
 fn the_static_curves_of_force_by_activation_are_the_authors() {
     for (activation, forces) in STATIC_FORCE {
         for (units, force) in [None, Some(3), Some(30)].into_iter().zip(forces) {
-            // The last unit's threshold is 0.8 within rounding, so that the authors' program recruits it
-            // at 0.8 with 6 units and not with 60: the model is evaluated next to it.
+            // The last unit's threshold is 0.8 within rounding, so that the authors' program
+            // recruits it at 0.8 with 6 units and not with 60: the model is evaluated next to it.
             let beside = match units {
                 Some(3) if activation == 0.8 => 1e-6,
                 Some(_) if activation == 0.8 => -1e-6,

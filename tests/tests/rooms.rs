@@ -68,8 +68,8 @@ fn only_the_board_names_the_chip() {
     assert_eq!(names, ["board/memory.rs", "board/noise.rs", "board.rs"]);
 }
 
-/// The explorer of interleavings intercepts every access: the firmware's levels share nothing else. The board's
-/// watchdog, built for the chip only, shares its timeout with flash.
+/// The explorer of interleavings intercepts every access: the firmware's levels share nothing else.
+/// The board's watchdog, built for the chip only, shares its timeout with flash.
 #[test]
 fn only_one_module_names_what_levels_share() {
     assert_eq!(mentions("firmware/src", &["atomic::"]), ["board/watchdog.rs", "shared.rs"]);

@@ -132,8 +132,8 @@ fn traffic() -> Vec<Request> {
 /// Watermark of unused stack.
 const PAINT: u8 = 0xA5;
 
-/// Greatest ratio of computed to measured depth. The computed one nests the deepest paths of all priorities; the ratio
-/// was 1.09 when this was written.
+/// Greatest ratio of computed to measured depth. The computed one nests the deepest paths of all
+/// priorities; the ratio was 1.09 when this was written.
 const MOST_RATIO: f64 = 1.5;
 
 #[test]
@@ -194,8 +194,8 @@ fn returns_of_exceptions(debugger: &mut Debugger, range: &Range<u32>) -> usize {
     memory.chunks_exact(4).filter(|word| is_return_of_exception(word)).count()
 }
 
-/// The tick overflows the stack during pulses: the first word outside RAM faults the core, statics are unchanged, and
-/// the chip restarts in neutral.
+/// The tick overflows the stack during pulses: the first word outside RAM faults the core, statics
+/// are unchanged, and the chip restarts in neutral.
 #[test]
 fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
     let Some(image) = image() else { return };

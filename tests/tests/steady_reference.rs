@@ -1,4 +1,5 @@
-//! The inverse under FES: its stimulation, held by the reference for seconds, gives the wanted force.
+//! The inverse under FES: its stimulation, held by the reference for seconds, gives the wanted
+//! force.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::link;

@@ -1,4 +1,5 @@
-//! The stimulator built for the shortest and the longest tick, in QEMU: the host's bits, and no tick late.
+//! The stimulator built for the shortest and the longest tick, in QEMU: the host's bits, and no
+//! tick late.
 
 use host_sim::hil::{self, Client, Emulated};
 use host_sim::reference::Mode;

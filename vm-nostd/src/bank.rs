@@ -111,7 +111,8 @@ impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
 
     /// Steps all muscles by one tick; the outputs are in the order of places.
     ///
-    /// Each muscle takes the input of its place. It cannot fail, and takes the time of its muscles' steps.
+    /// Each muscle takes the input of its place. It cannot fail, and takes the time of its muscles'
+    /// steps.
     pub fn step(&mut self, inputs: &[Input<S>; CAPACITY]) -> Vec<Output<S>, CAPACITY> {
         self.muscles.iter_mut().zip(inputs).map(|(muscle, input)| muscle.step(*input)).collect()
     }

@@ -1,8 +1,8 @@
 //! A checksum over coefficients and state, with which firmware detects a flipped bit in RAM.
 //!
-//! For each word, h <- (rotate(h, 5) xor word) k with k odd. This is a bijection of h for a given word and
-//! of the word for a given h: one changed word is always detected, several are missed with a probability
-//! of about 2^-32.
+//! For each word, h <- (rotate(h, 5) xor word) k with k odd. This is a bijection of h for a given
+//! word and of the word for a given h: one changed word is always detected, several are missed with
+//! a probability of about 2^-32.
 
 /// A checksum of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

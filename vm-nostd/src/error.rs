@@ -5,8 +5,8 @@ use core::fmt;
 /// A parameter that was refused, with its value and the limit it broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
-    /// The parameter's field. If a derived quantity is refused, its name follows after a colon, and `value`
-    /// and `limit` are those of the derived quantity.
+    /// The parameter's field. If a derived quantity is refused, its name follows after a colon, and
+    /// `value` and `limit` are those of the derived quantity.
     pub field: &'static str,
     /// Index of the fibre type; `None` for the muscle's own parameters.
     pub fiber: Option<usize>,

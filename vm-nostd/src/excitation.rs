@@ -88,10 +88,10 @@ impl<S: Scalar> Excitation<S> {
 
     /// One tick from (`intermediate`, `effective`) towards `drive`.
     ///
-    /// `frequency` is f_env, `slowing` the factor of Tf4; both, and the fascicle's `length`, are mid-tick
-    /// values. `reciprocal` is 1/length, clamped to the validity range of the filaments' equations. In
-    /// the variable x = ∫dt/Tf the two lags are linear and solved exactly; if f_int and f_eff cross
-    /// within the tick, x is the sum of both parts.
+    /// `frequency` is f_env, `slowing` the factor of Tf4; both, and the fascicle's `length`, are
+    /// mid-tick values. `reciprocal` is 1/length, clamped to the validity range of the filaments'
+    /// equations. In the variable x = ∫dt/Tf the two lags are linear and solved exactly; if f_int
+    /// and f_eff cross within the tick, x is the sum of both parts.
     #[inline(always)]
     pub(crate) fn advance(
         &self,

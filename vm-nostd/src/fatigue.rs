@@ -4,9 +4,9 @@
 //! λ = 1 - β + β (f/100 pps)², and 1 from 100 pps on,
 //! with the activation a and the stimulation frequency f.
 //!
-//! Source: Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167; without dependence on frequency,
-//! Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is not part of Virtual Muscle: without it
-//! a muscle keeps every bit.
+//! Source: Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167; without dependence on
+//! frequency, Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is not part of
+//! Virtual Muscle: without it a muscle keeps every bit.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Range, admit_one};
@@ -39,8 +39,8 @@ pub struct FatigueParams {
 }
 
 impl FatigueParams {
-    /// Paralysed human quadriceps (Riener, Quintern & Schmidt 1996). Fatigue differs between muscles,
-    /// patients and weeks of training more than any other parameter here: identify it.
+    /// Paralysed human quadriceps (Riener, Quintern & Schmidt 1996). Fatigue differs between
+    /// muscles, patients and weeks of training more than any other parameter here: identify it.
     pub const QUADRICEPS: Self = Self {
         fatigue_time: 18.0,
         recovery_time: 30.0,
@@ -155,14 +155,14 @@ impl<S: Scalar> Fatigue<S> {
         fingerprint.value()
     }
 
-    /// The [`FatigueState::SAVED_WORDS`] words of a saved state: a fingerprint of parameters, time step and
-    /// arithmetic, then [`FatigueState::words`].
+    /// The [`FatigueState::SAVED_WORDS`] words of a saved state: a fingerprint of parameters, time
+    /// step and arithmetic, then [`FatigueState::words`].
     pub fn save(&self, state: &FatigueState<S>) -> impl Iterator<Item = S::Bits> {
         core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
     }
 
-    /// Restores a state saved by [`Fatigue::save`]; an error if it is of other parameters or another time
-    /// step, or out of range.
+    /// Restores a state saved by [`Fatigue::save`]; an error if it is of other parameters or
+    /// another time step, or out of range.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
@@ -177,8 +177,9 @@ impl<S: Scalar> Fatigue<S> {
         Ok(FatigueState { steps, rest })
     }
 
-    /// Advances by one tick at an activation (clipped to 0..1; NaN counts as 0) and a stimulation frequency in
-    /// pps (clipped to 0..100; pass 100 for natural recruitment). Returns the new fitness.
+    /// Advances by one tick at an activation (clipped to 0..1; NaN counts as 0) and a stimulation
+    /// frequency in pps (clipped to 0..100; pass 100 for natural recruitment). Returns the new
+    /// fitness.
     pub fn advance(
         &self,
         state: &mut FatigueState<S>,

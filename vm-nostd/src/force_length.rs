@@ -1,8 +1,8 @@
 //! Force-length relation of the filaments: FL = exp(-|(L^beta - 1)/omega|^rho).
 //!
-//! In the logarithm of the power, rho ln|(L^beta - 1)/omega|, only rho ln|L - 1| is not smooth. The rest,
-//! rho ln((L^beta - 1)/((L - 1) omega)), is approximated by a polynomial in L - 1. All types share one
-//! logarithm and one reciprocal, and no power of L is computed in a tick.
+//! In the logarithm of the power, rho ln|(L^beta - 1)/omega|, only rho ln|L - 1| is not smooth. The
+//! rest, rho ln((L^beta - 1)/((L - 1) omega)), is approximated by a polynomial in L - 1. All types
+//! share one logarithm and one reciprocal, and no power of L is computed in a tick.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
@@ -32,7 +32,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Terms of the polynomial: FL is within 2e-6 for published types, within 1.2e-4 for all valid ones.
+/// Terms of the polynomial: FL is within 2e-6 for published types, within 1.2e-4 for all valid
+/// ones.
 const TERMS: usize = 8;
 /// Chebyshev nodes in -1..1: cos((2 k + 1) π/16).
 const NODES: [f64; TERMS] = [
@@ -47,8 +48,8 @@ const NODES: [f64; TERMS] = [
 ];
 
 impl ForceLengthParams {
-    /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first, interpolated at
-    /// nodes between two lengths.
+    /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first,
+    /// interpolated at nodes between two lengths.
     fn smooth(&self, (shortest, longest): (f64, f64)) -> [f64; TERMS] {
         let (middle, half) = (0.5 * (shortest + longest), 0.5 * (longest - shortest));
         let nodes = NODES.map(|node| middle + half * node);
@@ -84,8 +85,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp at 0. FL is 1
-/// within 1e-4 there, within 2e-9 for the paper's types.
+/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp at
+/// 0. FL is 1 within 1e-4 there, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.
@@ -237,7 +238,8 @@ pub(crate) mod tests {
     fn an_active_muscle_passes_its_optimal_length_without_a_jump() {
         let from = f64::from(0.128_f32);
         let (f32, f64) = (active::<f32>(from), active::<f64>(from));
-        // Strides in small steps: in the middle of some tick of some of them L is 1 to the last bit.
+        // Strides in small steps: in the middle of some tick of some of them L is 1 to the last
+        // bit.
         for trial in 0..40_000 {
             let (mut f32, mut f64) = (f32.clone(), f64.clone());
             let stride = 1.1e-4 * (1.0 + 1e-5 * f64::from(trial));

@@ -48,15 +48,15 @@ impl ForceVelocityParams {
         within("force_velocity.lengthening_velocity", self.lengthening_velocity, 0.01, 10.0)
     }
 
-    /// Shortest fascicle length (L_ce0, at least `least`) above which the shortening branch has no pole and
-    /// rises with V.
+    /// Shortest fascicle length (L_ce0, at least `least`) above which the shortening branch has no
+    /// pole and rises with V.
     pub(crate) fn shortest_length(&self, least: f64) -> f64 {
         let [c0, c1] = self.shortening;
         if c1 > 0.0 { ((POLE_MARGIN - 1.0 - c0) / c1).max(least) } else { least }
     }
 
-    /// Refuses coefficients that the arithmetic cannot represent in a range of fascicle lengths: those of
-    /// both branches, (1 + n V)/(1 + d V), and their terms.
+    /// Refuses coefficients that the arithmetic cannot represent in a range of fascicle lengths:
+    /// those of both branches, (1 + n V)/(1 + d V), and their terms.
     pub(crate) fn validate_magnitudes(
         &self,
         least: f64,
@@ -74,8 +74,8 @@ impl ForceVelocityParams {
         for coefficient in [c0 / v_max, c1 * most / v_max] {
             within("force_velocity.shortening: relative to V_max", coefficient)?;
         }
-        // Horner's scheme: monotonic terms are largest at an end of the range, and the quadratic is at
-        // most the sum of its checked terms.
+        // Horner's scheme: monotonic terms are largest at an end of the range, and the quadratic is
+        // at most the sum of its checked terms.
         for length in [least, most] {
             for part in [a0, (a1 + a2 * length) * length, a1, a2 * length] {
                 within("force_velocity.lengthening: relative to b_V", part / b)?;
@@ -127,11 +127,11 @@ impl<S: Scalar> ForceVelocity<S> {
         }
     }
 
-    /// The curve during a tick with the mid-tick fascicle length (L_ce0), which changes by `travel` (L_ce0)
-    /// across the tick.
+    /// The curve during a tick with the mid-tick fascicle length (L_ce0), which changes by `travel`
+    /// (L_ce0) across the tick.
     ///
-    /// The lengthening branch depends on length as much as FL does: constant over the tick, it would cause
-    /// nearly all of the error at 2 ms.
+    /// The lengthening branch depends on length as much as FL does: constant over the tick, it
+    /// would cause nearly all of the error at 2 ms.
     #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
         let [c0, c1] = self.shortening;
@@ -157,9 +157,9 @@ pub(crate) struct VelocityCurve<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// FV, its slope and half its curvature with respect to V, `time` ticks after mid-tick of a `curve`, on the
-    /// branch selected by `lengthening`, at a velocity of that branch. Beyond V_max FV is 0, where the paper's
-    /// expression is negative.
+    /// FV, its slope and half its curvature with respect to V, `time` ticks after mid-tick of a
+    /// `curve`, on the branch selected by `lengthening`, at a velocity of that branch. Beyond V_max
+    /// FV is 0, where the paper's expression is negative.
     #[inline(always)]
     pub(crate) fn on(
         &self,

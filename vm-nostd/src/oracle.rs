@@ -1,5 +1,5 @@
-//! Tests of every element against the paper's formula in `f64`, and of every slope against a difference
-//! quotient.
+//! Tests of every element against the paper's formula in `f64`, and of every slope against a
+//! difference quotient.
 
 use crate::ContinuousMuscle;
 use crate::activation::ActivationFrequency;
@@ -40,8 +40,8 @@ fn q(value: f64) -> Fixed {
     Fixed::from_f64(value)
 }
 
-/// Largest error of each relation that force is made of, for force in F0 at full activation, in `f32`,
-/// in fixed point and in `f64`.
+/// Largest error of each relation that force is made of, for force in F0 at full activation, in
+/// `f32`, in fixed point and in `f64`.
 const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("F_se", [3e-7, 6.6e-8, 6.7e-16]),
     ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
@@ -361,8 +361,8 @@ fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
         }
     }
     assert!(f32 <= sum(0), "f32: {f32:e} > {:e}", sum(0));
-    // A velocity that moves the tendon's extension by less than half an ULP a tick moves nothing: 3e-5
-    // L_ce0/s, over which FV rises by more than its own bound.
+    // A velocity that moves the tendon's extension by less than half an ULP a tick moves nothing:
+    // 3e-5 L_ce0/s, over which FV rises by more than its own bound.
     const UNRESOLVED: f64 = 3e-5;
     assert!(fixed <= sum(1) + UNRESOLVED, "fixed: {fixed:e} > {:e}", sum(1));
 }

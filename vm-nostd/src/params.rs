@@ -37,7 +37,8 @@ pub struct FiberType {
     pub activation: ActivationParams,
     /// Rise and fall of excitation.
     pub excitation: ExcitationParams,
-    /// Time constant of effective length T_L, s; 5e-5 to 0.01. Only `EffectiveLengthMuscle` uses it.
+    /// Time constant of effective length T_L, s; 5e-5 to 0.01. Only `EffectiveLengthMuscle` uses
+    /// it.
     #[doc(alias = "TL")]
     pub effective_length_time: f64,
     /// Sag, of fast types.
@@ -117,8 +118,8 @@ pub struct MuscleParams<const N: usize> {
     /// Optimal tendon length L_se0, m; 0.0005 to 2.
     pub tendon_length: f64,
     /// Longest musculotendon path L_mt_max, m; such that
-    /// [`MuscleParams::maximum_fascicle_length`] is 0.8 to 2. It scales the parallel elastic element; paths may
-    /// be longer, see [`MuscleParams::path_domain`].
+    /// [`MuscleParams::maximum_fascicle_length`] is 0.8 to 2. It scales the parallel elastic
+    /// element; paths may be longer, see [`MuscleParams::path_domain`].
     pub max_path_length: f64,
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
@@ -189,11 +190,11 @@ impl<const N: usize> MuscleParams<N> {
     /// Path lengths, in m, that are accepted; others are clipped and flagged.
     ///
     /// On the shortest path the tendon is slack with the fascicles at the lower end of
-    /// [`fascicle_domain`](Self::fascicle_domain) (FV's pole). On the longest path the fascicles are at its upper
-    /// end (n_f = 0.2) and pull with F0 plus their passive force: on a longer path no activation keeps them
-    /// inside. The longest path is limited to a passive force of 9 F0, which every arithmetic can represent, and
-    /// is at least `max_path_length`. In fixed point it may be shorter:
-    /// [`Muscle::path_length_range`](crate::Muscle::path_length_range).
+    /// [`fascicle_domain`](Self::fascicle_domain) (FV's pole). On the longest path the fascicles
+    /// are at its upper end (n_f = 0.2) and pull with F0 plus their passive force: on a longer path
+    /// no activation keeps them inside. The longest path is limited to a passive force of 9 F0,
+    /// which every arithmetic can represent, and is at least `max_path_length`. In fixed point it
+    /// may be shorter: [`Muscle::path_length_range`](crate::Muscle::path_length_range).
     pub fn path_domain(&self) -> (f64, f64) {
         let tendon = &self.elements.tendon;
         let shortest = self.fascicle_domain().0 * self.fascicle_length
@@ -213,15 +214,16 @@ impl<const N: usize> MuscleParams<N> {
         0.5 * (self.path_domain().0 + self.max_path_length)
     }
 
-    /// Path domain (m) in an arithmetic with paths up to `longest_path` (m) and lengths up to `largest` (L_ce0).
+    /// Path domain (m) in an arithmetic with paths up to `longest_path` (m) and lengths up to
+    /// `largest` (L_ce0).
     pub(crate) fn path_domain_within(&self, longest_path: f64, largest: f64) -> (f64, f64) {
         let (shortest, longest) = self.path_domain();
         let most = Scalar::min(longest_path, shortest + largest * self.fascicle_length);
         (shortest, Scalar::min(longest, most))
     }
 
-    /// Longest fascicles on paths up to `longest` (m), in L_ce0: at rest plus the margin for ringing, but leaving
-    /// room for the tendon.
+    /// Longest fascicles on paths up to `longest` (m), in L_ce0: at rest plus the margin for
+    /// ringing, but leaving room for the tendon.
     pub(crate) fn longest_fascicles(&self, longest: f64) -> f64 {
         let parallel = &self.elements.parallel;
         let maximum = self.maximum_fascicle_length();
@@ -267,8 +269,8 @@ impl<const N: usize> MuscleParams<N> {
         within("max_path_length", self.max_path_length, least, most)
     }
 
-    /// Checks that coefficients and intermediate forces are representable: fixed point ends at 128, and
-    /// sums of two coefficients must fit.
+    /// Checks that coefficients and intermediate forces are representable: fixed point ends at 128,
+    /// and sums of two coefficients must fit.
     pub(crate) fn validate_magnitudes(
         &self,
         step: TimeStep,
@@ -292,8 +294,9 @@ impl<const N: usize> MuscleParams<N> {
         within(PARALLEL, parallel.force(stretch), 0.0, largest)?;
         let toes = (stretch - parallel.slack_length) / parallel.toe;
         within(PARALLEL_TOE, toes, f64::MIN, 2.0 * largest)?;
-        // The mechanics extrapolate it linearly by half a tick, at most at the greatest speed. No sum of it may
-        // saturate up to there. It is added to a few F0 at most: the sum stays negative and is clamped to 0.
+        // The mechanics extrapolate it linearly by half a tick, at most at the greatest speed. No
+        // sum of it may saturate up to there. It is added to a few F0 at most: the sum stays
+        // negative and is clamped to 0.
         let compression = self.elements.compression.force(shortest);
         let steepness = self.elements.compression.steepness;
         let extrapolated = 1.0 - 0.5 * steepness * MAXIMUM_SPEED * step.seconds();

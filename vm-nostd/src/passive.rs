@@ -1,4 +1,5 @@
-//! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick filaments.
+//! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick
+//! filaments.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
@@ -39,8 +40,8 @@ pub struct CompressionParams {
     pub onset_length: f64,
 }
 
-/// The passive force is linear within a tick. Without damping, the energy error of this in a passive muscle
-/// that rings would accumulate.
+/// The passive force is linear within a tick. Without damping, the energy error of this in a
+/// passive muscle that rings would accumulate.
 const LEAST_VISCOSITY: f64 = 1e-3;
 
 impl ParallelParams {

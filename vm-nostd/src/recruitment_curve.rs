@@ -1,13 +1,14 @@
-//! From a stimulus to activation: how much of a muscle a pulse of so many mA and µs recruits, and which
-//! pulse recruits so much of it.
+//! From a stimulus to activation: how much of a muscle a pulse of so many mA and µs recruits, and
+//! which pulse recruits so much of it.
 //!
-//! Strength and duration (Lapicque 1907): a pulse of amplitude I and width w does what a very long one of
-//! I_e = I/(1 + c/w) would, c being the chronaxie; the least I_e that does anything is the rheobase of the
-//! first fibres to be recruited, here the threshold. Between threshold and saturation recruitment rises as
-//! an S, as isometric recruitment curves do (Durfee & MacLean, IEEE Trans. Biomed. Eng. 36 (1989) 654-667):
-//! x = (I_e - threshold)/(saturation - threshold), U = t/(t + m (1 - t))/2 with t = 2x up to x = 1/2, and
-//! the same turned about that point beyond. That rational form is ours: it has the slope m in the middle and
-//! 1/m at both ends, is exactly 0 and 1 where it should be, and has an inverse of the same form.
+//! Strength and duration (Lapicque 1907): a pulse of amplitude I and width w does what a very long
+//! one of I_e = I/(1 + c/w) would, c being the chronaxie; the least I_e that does anything is the
+//! rheobase of the first fibres to be recruited, here the threshold. Between threshold and
+//! saturation recruitment rises as an S, as isometric recruitment curves do (Durfee & MacLean, IEEE
+//! Trans. Biomed. Eng. 36 (1989) 654-667): x = (I_e - threshold)/(saturation - threshold), U = t/(t
+//! + m (1 - t))/2 with t = 2x up to x = 1/2, and the same turned about that point beyond. That
+//! rational form is ours: it has the slope m in the middle and 1/m at both ends, is exactly 0 and 1
+//! where it should be, and has an inverse of the same form.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Admission, Range, admit_one};
@@ -45,7 +46,8 @@ const GREATEST_STRENGTH: f64 = 100.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RecruitmentCurveParams {
-    /// Amplitude of a very long pulse that recruits the first fibres (their rheobase), A; 1e-5 to 0.2.
+    /// Amplitude of a very long pulse that recruits the first fibres (their rheobase), A; 1e-5 to
+    /// 0.2.
     pub threshold: f64,
     /// Amplitude of a very long pulse that recruits all, A; 1.05 thresholds to 0.2.
     pub saturation: f64,
@@ -159,8 +161,9 @@ impl<S: Scalar> RecruitmentCurve<S> {
         (self.rise(self.activations.clip(excess).0), a | w)
     }
 
-    /// The amplitude (mA) with which a pulse of some width recruits an activation; for 0, the greatest that
-    /// recruits nothing. To rounding: at the very ends, U may come back a little above 0 or below 1.
+    /// The amplitude (mA) with which a pulse of some width recruits an activation; for 0, the
+    /// greatest that recruits nothing. To rounding: at the very ends, U may come back a little
+    /// above 0 or below 1.
     pub fn amplitude_for(&self, activation: S, width: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (width, w) = self.admit_width(width);
         let (strength, u) = self.strength_for(activation);
@@ -176,8 +179,8 @@ impl<S: Scalar> RecruitmentCurve<S> {
         }
     }
 
-    /// The width (µs) with which a pulse of some amplitude recruits an activation; for 0, the greatest that
-    /// recruits nothing. To rounding, as for the amplitude.
+    /// The width (µs) with which a pulse of some amplitude recruits an activation; for 0, the
+    /// greatest that recruits nothing. To rounding, as for the amplitude.
     pub fn width_for(&self, activation: S, amplitude: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (amplitude, a) = self.admit_amplitude(amplitude);
         let (strength, u) = self.strength_for(activation);
@@ -214,7 +217,8 @@ impl<S: Scalar> RecruitmentCurve<S> {
         (self.threshold + self.back(activation).scaled(&self.reach), status)
     }
 
-    /// I_e/I of a width: w/(w + c), as 1 - 1/(1 + w/c), in which rounding cannot undo a growing width.
+    /// I_e/I of a width: w/(w + c), as 1 - 1/(1 + w/c), in which rounding cannot undo a growing
+    /// width.
     fn share(&self, width: S::Quantity) -> S {
         S::ONE - (S::ONE + S::of_quantity(width, &self.per_chronaxie)).reciprocal()
     }
@@ -229,14 +233,15 @@ impl<S: Scalar> RecruitmentCurve<S> {
         halves(activation, |u| S::ONE - self.bend(S::ONE - u))
     }
 
-    /// t/(t + m (1 - t)) for t in 0..1. What is divided grows with t and what it is divided by does not,
-    /// however they are rounded.
+    /// t/(t + m (1 - t)) for t in 0..1. What is divided grows with t and what it is divided by does
+    /// not, however they are rounded.
     fn bend(&self, t: S) -> S {
         t.ratio(self.slope - (self.slope - S::ONE) * t)
     }
 }
 
-/// A curve from (0, 0) to (1, 1) of two halves, the second of them the first turned about their middle.
+/// A curve from (0, 0) to (1, 1) of two halves, the second of them the first turned about their
+/// middle.
 fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     let first = x <= S::HALF;
     let rest = if first { x } else { S::ONE - x };
@@ -244,7 +249,8 @@ fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     if first { value } else { S::ONE - value }
 }
 
-/// The flag of the greatest amplitude or width, where that is not enough: to recruit nothing, it is.
+/// The flag of the greatest amplitude or width, where that is not enough: to recruit nothing, it
+/// is.
 fn unreachable<S: Scalar>(activation: S) -> PulseStatus {
     if activation > S::ZERO { PulseStatus::UNREACHABLE } else { PulseStatus::empty() }
 }

@@ -13,17 +13,18 @@ pub(crate) mod sealed {
     pub trait Sealed {}
 }
 
-/// An arithmetic of the model: `f32` with a floating-point unit, [`Fixed`](crate::Fixed) without one,
-/// `f64` for comparison.
+/// An arithmetic of the model: `f32` with a floating-point unit, [`Fixed`](crate::Fixed) without
+/// one, `f64` for comparison.
 ///
-/// The same source gives the same bits on any machine: `a * b + c` is never fused, and the kernels are
-/// portable code.
+/// The same source gives the same bits on any machine: `a * b + c` is never fused, and the kernels
+/// are portable code.
 ///
-/// The equations are written once, over this trait. Sums and products saturate in fixed point; operations
-/// that need more resolution are explicit: [`scaled`](Scalar::scaled) by a constant of any magnitude,
-/// [`Slow`](Scalar::Slow) for the state of a lag, [`ratio`](Scalar::ratio).
+/// The equations are written once, over this trait. Sums and products saturate in fixed point;
+/// operations that need more resolution are explicit: [`scaled`](Scalar::scaled) by a constant of
+/// any magnitude, [`Slow`](Scalar::Slow) for the state of a lag, [`ratio`](Scalar::ratio).
 ///
-/// Kernels and all that is called once a tick are inlined: a call costs a frame and spills registers.
+/// Kernels and all that is called once a tick are inlined: a call costs a frame and spills
+/// registers.
 pub trait Scalar:
     sealed::Sealed
     + Summed
@@ -47,7 +48,8 @@ pub trait Scalar:
     type Share: Copy + Debug + Summed;
     /// A musculotendon path length: m in floating point, µm in fixed point.
     type PathLength: Copy + Debug + PartialEq + PartialOrd + Summed;
-    /// A quantity with a unit: stimulation frequency in pps, pulse amplitude in mA, pulse width in µs.
+    /// A quantity with a unit: stimulation frequency in pps, pulse amplitude in mA, pulse width in
+    /// µs.
     type Quantity: Copy + Debug + PartialEq + PartialOrd + Summed;
     /// A tendon force: N in floating point, mN in fixed point.
     type Force: Copy + Debug + PartialEq + PartialOrd + Summed;
@@ -99,8 +101,8 @@ pub trait Scalar:
     /// Half; fixed point rounds toward minus infinity.
     #[must_use]
     fn half(self) -> Self;
-    /// Polynomial in `self` (-1..1) and its slope; coefficients by powers, constant first. The sum of their
-    /// magnitudes, and that of the slope's, is at most 100.
+    /// Polynomial in `self` (-1..1) and its slope; coefficients by powers, constant first. The sum
+    /// of their magnitudes, and that of the slope's, is at most 100.
     fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self);
     /// Reciprocal of a positive number; saturates.
     #[must_use]
@@ -124,8 +126,8 @@ pub trait Scalar:
     /// Solves a force balance with a residual `self`, a line and a hyperbola: the root u of
     /// `self` + `line` u + h(u) = 0, and h(u)/(`steepness` u), the secant over the tangent at 0.
     ///
-    /// h(u) = `steepness` u/(1 + bend u) with half the curvature `half_curvature` at 0; the root is on its
-    /// branch through 0. `line` and `steepness` are positive.
+    /// h(u) = `steepness` u/(1 + bend u) with half the curvature `half_curvature` at 0; the root is
+    /// on its branch through 0. `line` and `steepness` are positive.
     fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self);
 
     /// A slow value equal to `self`.
@@ -144,7 +146,8 @@ pub trait Scalar:
     fn share(value: f64) -> Self::Share;
     /// Step response of a lag after `self` time constants: 1 - exp(-`self`).
     fn done(self) -> Self::Share;
-    /// Step response of two lags in series after half of x and after x = `self` time constants, at most 2.5.
+    /// Step response of two lags in series after half of x and after x = `self` time constants, at
+    /// most 2.5.
     fn lags(self) -> [Lags<Self::Share>; 2];
     /// The words of a slow value.
     fn slow_words(slow: Self::Slow) -> impl Iterator<Item = Self::Bits>;

@@ -1,14 +1,14 @@
 //! Steady state under intramuscular FES: the force of a stimulation, and the inverse.
 //!
-//! In steady state V = 0, Y = 1, FV = 1, f_eff = U, S = a_S2 of a firing type, and tendon and fascicles are in
-//! equilibrium:
+//! In steady state V = 0, Y = 1, FV = 1, f_eff = U, S = a_S2 of a firing type, and tendon and
+//! fascicles are in equilibrium:
 //!
 //! F_se = max(0, U Σ pcsa_i Af_i FL_i + max(0, F_pe1 + Σ pcsa_i Af_i F_pe2)).
 //!
-//! A wanted force gives the tendon's length, by the inverse of F_se, and with it the fascicle length; at a
-//! given length and frequency only U remains unknown. The inverse needs no search. If the force is
-//! unreachable, the nearest one is found by bisection; if the tendon is so long that there may be several
-//! equilibria, the result is checked by bisection.
+//! A wanted force gives the tendon's length, by the inverse of F_se, and with it the fascicle
+//! length; at a given length and frequency only U remains unknown. The inverse needs no search. If
+//! the force is unreachable, the nearest one is found by bisection; if the tendon is so long that
+//! there may be several equilibria, the result is checked by bisection.
 
 use crate::activation::ActivationFrequency;
 use crate::domain::{Domain, Status};
@@ -97,8 +97,8 @@ const HALVINGS: usize = 40;
 const ROUNDING: f64 = 1e-4;
 /// Tolerance of the held force, F0.
 const PROMISED: f64 = 1e-3;
-/// Above this tendon length, in fascicle lengths, the descending limb of FL may be steeper than the tendon is
-/// stiff: there may be several equilibria, some unstable.
+/// Above this tendon length, in fascicle lengths, the descending limb of FL may be steeper than the
+/// tendon is stiff: there may be several equilibria, some unstable.
 const LONGEST_PLAIN_TENDON: f64 = 5.0;
 
 impl<S: Scalar, const N: usize> SteadyFes<S, N> {
@@ -144,9 +144,9 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.settled(input, status)
     }
 
-    /// Activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency, within 0.1 % of
-    /// F0. If there is none, the status is flagged, and activation and force are the nearest ones. A force
-    /// that is NaN counts as 0, a path as the longest.
+    /// Activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency,
+    /// within 0.1 % of F0. If there is none, the status is flagged, and activation and force are
+    /// the nearest ones. A force that is NaN counts as 0, a path as the longest.
     pub fn activation_for(
         &self,
         force: S::Force,
@@ -168,7 +168,8 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, self.rounding, path_length, stimulation_frequency)
     }
 
-    /// Steady state at a force (F0); one that exceeds the reachable force by `rounding` counts as reachable.
+    /// Steady state at a force (F0); one that exceeds the reachable force by `rounding` counts as
+    /// reachable.
     fn holding(
         &self,
         wanted: S,
@@ -227,8 +228,8 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         }
     }
 
-    /// Equilibrium of an admitted input by bisection: the net force is monotonic in the extension, except with the
-    /// longest tendons.
+    /// Equilibrium of an admitted input by bisection: the net force is monotonic in the extension,
+    /// except with the longest tendons.
     fn settled(&self, input: Input<S>, status: Status) -> Steady<S> {
         let lengths = &self.domain.fascicle_length;
         let mut least = self.tendon.extension(input.path_length, lengths.most);

@@ -14,9 +14,9 @@ const STORAGE: u32 = 768 * 1024;
 const STORAGE_BYTES: usize = 256 * 1024;
 const SECTOR: usize = STORAGE_BYTES / 2;
 
-/// The part's flash, from [`STORAGE`] on. Its waits are those of `stm32f4xx-hal` while an operation is under way:
-/// the core, which runs from flash, is held up then in any case, and an operation that never ends is ended by the
-/// watchdog.
+/// The part's flash, from [`STORAGE`] on. Its waits are those of `stm32f4xx-hal` while an operation
+/// is under way: the core, which runs from flash, is held up then in any case, and an operation
+/// that never ends is ended by the watchdog.
 pub struct Controller(FLASH);
 
 impl Controller {

@@ -37,15 +37,16 @@ impl WatchdogRegisters for Registers {
     }
 }
 
-/// Polls of the registers that last longer than any change: at boot the core runs at 16 MHz, and a poll takes it
-/// four clocks at least.
+/// Polls of the registers that last longer than any change: at boot the core runs at 16 MHz, and a
+/// poll takes it four clocks at least.
 const POLLS: u32 = MOST_CHANGE_MS * 16_000 / 4;
 
 /// Restarts the chip when ticks stop coming.
 pub struct Watchdog(watchdog::Watchdog<Registers>);
 
 impl Watchdog {
-    /// Running. A part whose watchdog does not is not used: it starts again, in neutral, until it does.
+    /// Running. A part whose watchdog does not is not used: it starts again, in neutral, until it
+    /// does.
     pub(super) fn start(registers: IWDG, tick_us: u32) -> Self {
         let Ok(watchdog) = watchdog::Watchdog::start(Registers(registers), tick_us, POLLS) else {
             reset()

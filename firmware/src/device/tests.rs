@@ -244,7 +244,8 @@ fn rows_that_are_no_finite_numbers_are_a_fault_and_no_stimulus() {
     }
 }
 
-/// What is asked for while nothing is armed is kept for whoever arms until it is older than its limit, to the tick.
+/// What is asked for while nothing is armed is kept for whoever arms until it is older than its
+/// limit, to the tick.
 #[test]
 fn requests_of_before_arming_are_kept_until_they_are_too_old() {
     let limits = Limits { readings_ms: 5_000, ..Limits::SURFACE.within_scale(&SCALE) };

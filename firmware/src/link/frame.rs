@@ -20,8 +20,9 @@ pub const MOST_FRAME: usize = cobs::max_encoding_length(MOST_WHOLE) + 1;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// Initial value of a frame's checksum, different for each session, so that frames of another session are
-/// refused, except one in 2^31. [`NO_SESSION`] for greetings and for all frames of the device.
+/// Initial value of a frame's checksum, different for each session, so that frames of another
+/// session are refused, except one in 2^31. [`NO_SESSION`] for greetings and for all frames of the
+/// device.
 pub type SessionNumber = u32;
 /// The number of no session, see [`SessionNumber`].
 pub const NO_SESSION: SessionNumber = 0;
@@ -92,7 +93,8 @@ impl Receiver {
         self.incomplete = true;
     }
 
-    /// Takes a byte. If it ends a frame, returns the frame, of this session or of none, or an error.
+    /// Takes a byte. If it ends a frame, returns the frame, of this session or of none, or an
+    /// error.
     pub fn push(
         &mut self,
         byte: u8,

@@ -1,4 +1,5 @@
-//! Messages between host and device. Appending to an enumeration keeps the version; any other change raises it.
+//! Messages between host and device. Appending to an enumeration keeps the version; any other
+//! change raises it.
 
 use crate::configuration::{MUSCLES, TYPES};
 use crate::link::{Counters, LinkError, SessionNumber};
@@ -19,7 +20,8 @@ pub const MOST_WORDS: usize = 16;
 // A received request is taken apart at once.
 #[allow(clippy::large_enum_variant)]
 pub enum Request {
-    /// Begins a session, from this sequence number on; not accepted while armed. Answer: [`Answer::Info`].
+    /// Begins a session, from this sequence number on; not accepted while armed. Answer:
+    /// [`Answer::Info`].
     Hello {
         /// The host's random number: the session number is made of this and of the device's.
         nonce: u32,
@@ -33,19 +35,20 @@ pub enum Request {
         /// The muscle.
         upload: Upload,
     },
-    /// Puts all muscles at rest on these path lengths (m); by default on `MuscleParams::middle_path`. Rows count from 0
-    /// again. Refused while armed.
+    /// Puts all muscles at rest on these path lengths (m); by default on
+    /// `MuscleParams::middle_path`. Rows count from 0 again. Refused while armed.
     Rest([Option<f32>; MUSCLES]),
-    /// Inputs of the next ticks, one row per tick; without a row the muscles wait. A row stimulates for
-    /// [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault or a stop while armed discards waiting rows.
+    /// Inputs of the next ticks, one row per tick; without a row the muscles wait. A row stimulates
+    /// for [`Limits::rows_ms`](crate::Limits::rows_ms) at most. A fault or a stop while armed
+    /// discards waiting rows.
     Rows {
         /// Number of the first.
         first: u32,
         /// Inputs of each tick.
         rows: Vec<[RowInputs; MUSCLES], MOST_ROWS>,
     },
-    /// Stimuli of channels without an electrode, for [`Limits::drives_ms`](crate::Limits::drives_ms) at most: the host
-    /// repeats them.
+    /// Stimuli of channels without an electrode, for
+    /// [`Limits::drives_ms`](crate::Limits::drives_ms) at most: the host repeats them.
     Drive([Option<Stimulus>; CHANNELS]),
     /// Sensor readings. The path counts as missing when older than
     /// [`Limits::readings_ms`](crate::Limits::readings_ms).
@@ -100,8 +103,8 @@ pub struct Electrode {
     pub recovery: u8,
 }
 
-/// Inputs of a muscle in a tick; clipped to their ranges and flagged. For a muscle with an electrode, an activation or
-/// a frequency that is not finite is [`Fault::Request`].
+/// Inputs of a muscle in a tick; clipped to their ranges and flagged. For a muscle with an
+/// electrode, an activation or a frequency that is not finite is [`Fault::Request`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowInputs {
     /// Activation U (OpenSim, MuJoCo: excitation or control), 0..1.
@@ -191,8 +194,8 @@ pub enum Refusal<'a> {
         /// Free places.
         room: u32,
     },
-    /// Memory did not keep what it was given. What was stored before still is, and the next boot restores it, unless the
-    /// reason is [`NotStored::Unknown`].
+    /// Memory did not keep what it was given. What was stored before still is, and the next boot
+    /// restores it, unless the reason is [`NotStored::Unknown`].
     NotStored(NotStored),
     /// Supervision refused.
     NotArmed(NotArmed),

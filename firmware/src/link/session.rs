@@ -46,7 +46,8 @@ pub enum LinkError {
 pub struct Counters {
     /// Acted upon.
     pub accepted: u32,
-    /// [`LinkError::TooLong`], [`LinkError::TooShort`], [`LinkError::Malformed`], or a wrong checksum.
+    /// [`LinkError::TooLong`], [`LinkError::TooShort`], [`LinkError::Malformed`], or a wrong
+    /// checksum.
     pub broken: u32,
     /// Intact, but refused for version, sequence or message.
     pub refused: u32,
@@ -81,8 +82,8 @@ impl Session {
 
     /// The request in a frame of a [`Receiver`](crate::link::Receiver), if it is to be acted upon.
     ///
-    /// A greeting begins a session with any sequence number, of the number that `begin` makes of the host's nonce.
-    /// Nothing else is acted upon that does not belong to a session.
+    /// A greeting begins a session with any sequence number, of the number that `begin` makes of
+    /// the host's nonce. Nothing else is acted upon that does not belong to a session.
     pub fn admit(
         &mut self,
         received: Result<Frame<'_>, LinkError>,

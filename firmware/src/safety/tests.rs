@@ -1,4 +1,5 @@
-//! Limits are exact over their whole type, which no test could wait for: time is set just before and just after.
+//! Limits are exact over their whole type, which no test could wait for: time is set just before
+//! and just after.
 
 use super::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor, micros};
 use crate::limits::Limits;

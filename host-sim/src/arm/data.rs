@@ -192,7 +192,8 @@ mod tests {
         }
     }
 
-    /// The longest path against a search over all angles, the moment arms against finite differences.
+    /// The longest path against a search over all angles, the moment arms against finite
+    /// differences.
     #[test]
     fn paths_and_moment_arms_belong_together() {
         let arm = Arm::built_in();

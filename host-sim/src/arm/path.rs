@@ -2,8 +2,9 @@
 
 use super::skeleton::Joints;
 
-/// Path length, quadratic in each angle: `length + Σ (a q + b q²)`, with q measured from the reference angle.
-/// The moment arm about a joint is minus the derivative of the path with respect to q.
+/// Path length, quadratic in each angle: `length + Σ (a q + b q²)`, with q measured from the
+/// reference angle. The moment arm about a joint is minus the derivative of the path with respect
+/// to q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPolynomial {
     /// At the reference angles, m.

@@ -179,8 +179,9 @@ impl<'a> Simulation<'a> {
         Ok(Self { arm, drive, running, paths, forces_before: forces, now })
     }
 
-    /// One tick as predictor and corrector: predicted with extrapolated forces, then corrected with the forces on
-    /// the predicted path. A force that lags by a tick would feed energy into oscillations.
+    /// One tick as predictor and corrector: predicted with extrapolated forces, then corrected with
+    /// the forces on the predicted path. A force that lags by a tick would feed energy into
+    /// oscillations.
     fn step(&mut self) -> Result<(), ArmError> {
         let now = &self.now;
         let foreseen: Vec<f64> = now

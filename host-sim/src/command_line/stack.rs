@@ -21,8 +21,8 @@ pub struct StackArgs {
     /// Print a JSON object instead of tables.
     #[arg(long)]
     json: bool,
-    /// Fail where the firmware's README is not what is computed, as well as where anything is unknown or there is not
-    /// enough memory.
+    /// Fail where the firmware's README is not what is computed, as well as where anything is
+    /// unknown or there is not enough memory.
     #[arg(long)]
     check: bool,
     /// Write the tables into the firmware's README.

@@ -1,5 +1,5 @@
-//! Which file of the source an instruction comes from. Of the model that says which equation it is part
-//! of, however much the compiler has inlined: each has a file of its own.
+//! Which file of the source an instruction comes from. Of the model that says which equation it is
+//! part of, however much the compiler has inlined: each has a file of its own.
 
 use super::image::{Image, ImageError};
 use addr2line::Loader;
@@ -23,7 +23,8 @@ impl Source {
     }
 
     /// The file that the code at an address is part of: of the calls that were inlined there, the
-    /// innermost in the model that is no kernel; without one, that they are kernels, or not the model.
+    /// innermost in the model that is no kernel; without one, that they are kernels, or not the
+    /// model.
     pub fn file(&self, address: u32) -> String {
         let mut files = Vec::new();
         if let Ok(mut frames) = self.0.find_frames(address.into()) {

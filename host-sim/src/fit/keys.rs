@@ -2,8 +2,8 @@
 
 use crate::reference::{Elements, Fatigue, FiberType, Muscle};
 
-/// A number of a muscle file: its key, the file's units per SI unit, and where it is; nowhere in a part that has
-/// no sag or yield.
+/// A number of a muscle file: its key, the file's units per SI unit, and where it is; nowhere in a
+/// part that has no sag or yield.
 type Number<Part> = (&'static str, f64, fn(&mut Part) -> Option<&mut f64>);
 
 const MUSCLE: &[Number<Muscle>] = &[

@@ -1,4 +1,5 @@
-//! A fit from the files to what is found: parameters, what is known of them, and every trial beside the model.
+//! A fit from the files to what is found: parameters, what is known of them, and every trial beside
+//! the model.
 
 use super::FitError;
 use super::problem::Problem;

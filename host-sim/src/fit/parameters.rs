@@ -45,8 +45,8 @@ pub struct Parameter {
 const DRAWN: f64 = 3.0;
 
 impl Parameter {
-    /// Where starts are drawn from, and against which determination is judged: the bounds, but no further than
-    /// a factor of three from the start.
+    /// Where starts are drawn from, and against which determination is judged: the bounds, but no
+    /// further than a factor of three from the start.
     pub fn range(&self) -> (f64, f64) {
         let (least, most) = self.bounds;
         let (a, b) = (self.start / DRAWN, self.start * DRAWN);
@@ -73,8 +73,8 @@ impl Parameter {
     }
 }
 
-/// A muscle with its parameters in their places; F0 is set last, so that it holds whatever else changes, and is
-/// kept where `keep_force` says so.
+/// A muscle with its parameters in their places; F0 is set last, so that it holds whatever else
+/// changes, and is kept where `keep_force` says so.
 pub fn applied(
     start: &Muscle,
     parameters: &[Parameter],

@@ -108,7 +108,8 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Refuses what cannot be the force of a muscle: too few readings, always the same, or cut off at the top.
+    /// Refuses what cannot be the force of a muscle: too few readings, always the same, or cut off
+    /// at the top.
     pub fn check_force(&self) -> Result<(), TraceError> {
         if self.rows.len() < FEWEST {
             let problem = format!("{} readings in the window: at least {FEWEST}", self.rows.len());
@@ -166,7 +167,8 @@ impl Recording {
     }
 }
 
-/// The lines of a file after those that are skipped, each with its number and its cells; empty lines are none.
+/// The lines of a file after those that are skipped, each with its number and its cells; empty
+/// lines are none.
 fn cells(text: &str, source: &Source) -> Result<Vec<(u64, Vec<String>)>, TraceError> {
     let skipped = source.skip_lines as u64;
     let Some(delimiter) = source.delimiter else {

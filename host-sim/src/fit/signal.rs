@@ -1,4 +1,5 @@
-//! A signal of a trial: constant, in steps, or recorded; scaled, with an offset that may be a free parameter.
+//! A signal of a trial: constant, in steps, or recorded; scaled, with an offset that may be a free
+//! parameter.
 
 use super::FitError;
 use super::recording::{Column, Recording, Source};
@@ -87,8 +88,8 @@ impl Signal {
         Self { shape: Shape::Constant(value), scale: 1.0, offset: Offset::Fixed(0.0) }
     }
 
-    /// Reads a signal, its file in `folder`; `free` are the names of the offsets that may be named, `refuse` says
-    /// what is wrong with a key of it.
+    /// Reads a signal, its file in `folder`; `free` are the names of the offsets that may be named,
+    /// `refuse` says what is wrong with a key of it.
     pub fn read(
         table: &SignalTable,
         folder: &Path,

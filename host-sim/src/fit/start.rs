@@ -1,4 +1,5 @@
-//! The muscle that a fit starts from: resolved, and as a table of its file to put fitted numbers into.
+//! The muscle that a fit starts from: resolved, and as a table of its file to put fitted numbers
+//! into.
 
 use super::keys::FORCE;
 use crate::coefficients;

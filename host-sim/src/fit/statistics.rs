@@ -1,9 +1,10 @@
 //! What the recordings tell of the parameters: linear least squares about the solution.
 //!
-//! With J the derivatives of the residuals and s² their variance, the covariance of the parameters is
-//! (JᵀJ/s² + P)⁻¹, P being the precision of what is believed beforehand. Residuals of a model that is not quite
-//! the muscle go together from reading to reading: s² is multiplied by (1 + r)/(1 - r) of their correlation r with
-//! the one before, which is the variance of a mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
+//! With J the derivatives of the residuals and s² their variance, the covariance of the parameters
+//! is (JᵀJ/s² + P)⁻¹, P being the precision of what is believed beforehand. Residuals of a model
+//! that is not quite the muscle go together from reading to reading: s² is multiplied by (1 + r)/(1
+//! - r) of their correlation r with the one before, which is the variance of a mean of such a
+//! series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
 
 use super::parameters::Parameter;
 use nalgebra::DMatrix;
@@ -68,8 +69,8 @@ pub struct Statistics {
     pub noise_ratio: f64,
 }
 
-/// The statistics of a solution: `jacobian` is by each parameter in units of its range, `series` are the residuals
-/// trial by trial.
+/// The statistics of a solution: `jacobian` is by each parameter in units of its range, `series`
+/// are the residuals trial by trial.
 pub fn statistics(
     parameters: &[Parameter],
     values: &[f64],
@@ -142,7 +143,8 @@ fn inflation(series: &[Vec<f64>]) -> f64 {
     (1.0 + correlation) / (1.0 - correlation)
 }
 
-/// The inverse of an information matrix; where there is no information, there is next to infinite variance.
+/// The inverse of an information matrix; where there is no information, there is next to infinite
+/// variance.
 fn covariance(information: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = information.clone().symmetric_eigen();
     let greatest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
@@ -161,7 +163,8 @@ mod tests {
         Parameter { name, place, start: 0.0, bounds: (-5.0, 5.0), prior }
     }
 
-    /// A straight line a + b t through readings with residuals of ±1, 0.1 apart: its textbook errors.
+    /// A straight line a + b t through readings with residuals of ±1, 0.1 apart: its textbook
+    /// errors.
     #[test]
     fn a_line_has_the_errors_of_a_line() {
         let times: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.1).collect();

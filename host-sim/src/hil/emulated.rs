@@ -17,8 +17,8 @@ pub struct Emulated {
 
 /// Longest start of QEMU.
 const BOOT: Duration = Duration::from_secs(30);
-/// An instruction takes 2^3 ns (1.3 cycles at 168 MHz). Emulated time depends on instructions alone and skips
-/// waits, so that the load of the host does not delay a tick.
+/// An instruction takes 2^3 ns (1.3 cycles at 168 MHz). Emulated time depends on instructions alone
+/// and skips waits, so that the load of the host does not delay a tick.
 const INSTRUCTION_TIME: &str = "shift=3,sleep=off";
 
 impl Emulated {

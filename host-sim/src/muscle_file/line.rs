@@ -1,7 +1,7 @@
 //! Finds the line of a key in a muscle file.
 
-/// Line (counted from 1) of a key such as `mass_g`, `elements.cT` or `fiber[1].beta`. The last part may
-/// be several keys or a derived quantity.
+/// Line (counted from 1) of a key such as `mass_g`, `elements.cT` or `fiber[1].beta`. The last part
+/// may be several keys or a derived quantity.
 pub(super) fn line_of(text: &str, key: &str) -> Option<usize> {
     let (table, key) = key.split_once('.').unwrap_or(("", key));
     let key = key.split([',', ':', '.', '[']).next().unwrap_or(key).trim();

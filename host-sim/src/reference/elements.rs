@@ -39,7 +39,8 @@ pub fn force_velocity(t: &FiberType, l: f64, v: f64) -> f64 {
     }
 }
 
-/// Af = 1 - exp(-(Y S f / (af n_f))^n_f), n_f = nf0 + nf1 (1/L - 1); with effective length, L is that.
+/// Af = 1 - exp(-(Y S f / (af n_f))^n_f), n_f = nf0 + nf1 (1/L - 1); with effective length, L is
+/// that.
 pub fn activation_frequency(t: &FiberType, f: f64, l: f64, y: f64, s: f64) -> f64 {
     let n_f = t.nf0 + t.nf1 * (1.0 / l - 1.0);
     // A stage of the integrator may give f slightly below 0, where the power is undefined.

@@ -1,5 +1,6 @@
-//! Fatigue and recovery as a factor on force (Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167):
-//! d fit/dt = (fit_min - fit) a λ/T_fat + (1 - fit)(1 - a λ)/T_rec, λ = 1 - β + β (f/100 pps)².
+//! Fatigue and recovery as a factor on force (Riener, Quintern & Schmidt, J. Biomech. 29 (1996)
+//! 1157-1167): d fit/dt = (fit_min - fit) a λ/T_fat + (1 - fit)(1 - a λ)/T_rec, λ = 1 - β + β
+//! (f/100 pps)².
 
 /// Coefficients of fatigue, by the paper's symbols.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +16,8 @@ pub struct Fatigue {
 }
 
 impl Fatigue {
-    /// fit after `time` (s) at a constant activation and frequency (pps): the equation is linear in fit.
+    /// fit after `time` (s) at a constant activation and frequency (pps): the equation is linear in
+    /// fit.
     pub(super) fn fitness(&self, start: f64, time: f64, a: f64, f: f64) -> f64 {
         let lambda = 1.0 - self.beta + self.beta * (f.clamp(0.0, 100.0) / 100.0).powi(2);
         let tiring = a.clamp(0.0, 1.0) * lambda / self.T_fat;

@@ -1,7 +1,8 @@
 //! Pennation, which Virtual Muscle does not model: its effect on steady force.
 //!
-//! A muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): L sin α is constant, so
-//! that sin α = sin α0/L with the angle α0 at L_ce0; the tendon carries cos α of the fascicle force.
+//! A muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): L sin α is
+//! constant, so that sin α = sin α0/L with the angle α0 at L_ce0; the tendon carries cos α of the
+//! fascicle force.
 
 use super::elements as element;
 use super::muscle::Muscle;

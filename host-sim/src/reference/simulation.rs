@@ -1,6 +1,6 @@
-//! Integration of the model over ticks, by an adaptive Dormand-Prince 5(4) pair that is restarted at
-//! every tick, because inputs jump there. An implicit method fails: its finite-difference Jacobian has an
-//! infinite slope at the kink f_int = f_eff.
+//! Integration of the model over ticks, by an adaptive Dormand-Prince 5(4) pair that is restarted
+//! at every tick, because inputs jump there. An implicit method fails: its finite-difference
+//! Jacobian has an infinite slope at the kink f_int = f_eff.
 
 use super::elements as element;
 use super::muscle::Muscle;
@@ -229,8 +229,8 @@ impl System<f64, DVector<f64>> for Tick<'_> {
             let (f_int, f_eff) = (y[at + F_INT], y[at + F_EFF]);
             let f_env = self.f_env[j];
             let rising = f_int >= f_eff;
-            // Frequency at the filaments, input of the excitation chain, sag of the unit, and weights of
-            // the two kinds of force.
+            // Frequency at the filaments, input of the excitation chain, sag of the unit, and
+            // weights of the two kinds of force.
             let (f, drive, sagging, weight, compression_weight) = match self.mode {
                 Mode::Continuous => {
                     let weight = u_eff * weights[j];

@@ -1,5 +1,5 @@
-//! Description of what an image does not contain: vectors in use, their priorities, and targets of indirect
-//! calls.
+//! Description of what an image does not contain: vectors in use, their priorities, and targets of
+//! indirect calls.
 
 use serde::Deserialize;
 

@@ -82,7 +82,8 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     }
 }
 
-/// Instructions of an IT block that execute if the condition holds; the others execute if it does not.
+/// Instructions of an IT block that execute if the condition holds; the others execute if it does
+/// not.
 pub(super) fn conditional_behind(instruction: &Instruction) -> Option<Vec<bool>> {
     let then_else = instruction.mnemonic().strip_prefix('i')?;
     let is_one = instruction.class == Class::IfThen;

@@ -102,7 +102,8 @@ impl Case {
         text
     }
 
-    /// Error of every arithmetic against the reference, and what it flagged; why, where there is none.
+    /// Error of every arithmetic against the reference, and what it flagged; why, where there is
+    /// none.
     pub fn errors(&self, arithmetics: &[Arithmetic]) -> Result<Vec<Measured>, String> {
         let (muscle, trace) = (self.muscle()?, self.trace());
         let run = |arithmetic| {

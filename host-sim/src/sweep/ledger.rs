@@ -47,8 +47,8 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is dropped; every
-    /// other one must begin as `begin` says that its case's does.
+    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is
+    /// dropped; every other one must begin as `begin` says that its case's does.
     pub fn open(
         path: &Path,
         head: &[String; 2],

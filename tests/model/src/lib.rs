@@ -1,3 +1,4 @@
-//! Tests of the model that need no reference live in `tests/model/tests`: they build without `host-sim`.
+//! Tests of the model that need no reference live in `tests/model/tests`: they build without
+//! `host-sim`.
 
 pub mod muscles;

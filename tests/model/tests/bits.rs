@@ -1,8 +1,9 @@
 //! Golden bits of every mode, arithmetic and kind of muscle.
 //!
-//! `golden.toml` of host-sim holds the bits of the published scenarios; this needs no host, and goes where those do
-//! not: to paths that jump, inputs that are no numbers, and short ticks. Written by
-//! `VM_WRITE=1 cargo test --release -p model-tests --test bits`, which without `VM_WRITE` compares.
+//! `golden.toml` of host-sim holds the bits of the published scenarios; this needs no host, and
+//! goes where those do not: to paths that jump, inputs that are no numbers, and short ticks.
+//! Written by `VM_WRITE=1 cargo test --release -p model-tests --test bits`, which without
+//! `VM_WRITE` compares.
 
 use firmware::{Inputs, MUSCLE, Scenario};
 use model_tests::muscles::{Discrete, Mode, built};
@@ -64,7 +65,8 @@ fn bits<S: Scalar, R: Mode<S>>(params: &MuscleParams<2>, seconds: f64, natural: 
     let mut sum = Sum(0xcbf2_9ce4_8422_2325);
     for tick in 0..TICKS {
         let input: Input<f64> = Scenario.inputs(tick)[natural];
-        // The scenario's path is the paper's muscle's: from 0.12 to 0.2 m here, its range of this one, and beyond.
+        // The scenario's path is the paper's muscle's: from 0.12 to 0.2 m here, its range of this
+        // one, and beyond.
         let share = (input.path_length - 0.13) / 0.06;
         let jump = if tick % 700 < 350 { 0.0 } else { 0.1 };
         let path = shortest + (share + jump) * (longest - shortest);

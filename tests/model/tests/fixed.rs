@@ -235,8 +235,8 @@ fn states_that_no_tick_leaves_are_refused() {
     let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
     let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
-    // Word 0 says whose they are. Words 4 and 5 are Y of the slow type, which yields and does not sag, 8 and 9
-    // U_eff, and 10 to 16 the rest of that type; lags have two, the higher one second.
+    // Word 0 says whose they are. Words 4 and 5 are Y of the slow type, which yields and does not
+    // sag, 8 and 9 U_eff, and 10 to 16 the rest of that type; lags have two, the higher one second.
     for (word, value) in [
         (1, 0x8000_0000), // extension -128
         (1, whole(129)),  // extension -127

@@ -1,5 +1,6 @@
-//! Fixed point accepts the published morphometry that `f32` accepts, with the same accuracy: fascicles of 1.5 to 50 cm, tendons
-//! of 0.05 to 12 fascicle lengths and at most 2 m, F0 of 1 N to 16 kN, every preset alone and mixed.
+//! Fixed point accepts the published morphometry that `f32` accepts, with the same accuracy:
+//! fascicles of 1.5 to 50 cm, tendons of 0.05 to 12 fascicle lengths and at most 2 m, F0 of 1 N to
+//! 16 kN, every preset alone and mixed.
 
 use model_tests::muscles::config;
 use proptest::prelude::*;
@@ -34,7 +35,8 @@ fn sets() -> Vec<(ElementParams, [FiberType; TYPES])> {
     sets
 }
 
-/// The muscle of a set, of fascicles (m), a tendon in fascicle lengths, F0 (N), two fractions, U_r, and L_max.
+/// The muscle of a set, of fascicles (m), a tendon in fascicle lengths, F0 (N), two fractions, U_r,
+/// and L_max.
 fn muscle(
     (elements, types): (ElementParams, [FiberType; TYPES]),
     (fascicle_length, ratio, newtons): (f64, f64, f64),
@@ -90,7 +92,8 @@ impl<S: Scalar> Mode<S> for Discrete {
     }
 }
 
-/// A mild second: activation and path swing slowly, with the tendon taut. Forces in F0, and all flags.
+/// A mild second: activation and path swing slowly, with the tendon taut. Forces in F0, and all
+/// flags.
 fn mild<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> (Vec<f64>, Status) {
     let muscle = Muscle::<S, R, TYPES>::build_with_units(params, &R::units(params), step)
         .unwrap_or_else(|error| panic!("{error}: {params:?}"));

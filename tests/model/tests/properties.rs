@@ -220,7 +220,8 @@ proptest! {
         let muscle = ContinuousMuscle::<f32, TYPES>::build(&params, step).expect("a valid muscle");
         let mut state = muscle.rest(path_length).expect("a path in range");
         let at_rest = muscle.observe(&state);
-        // On a long path its fascicles may be where only activation keeps them from; passive forces hold there.
+        // On a long path its fascicles may be where only activation keeps them from; passive forces
+        // hold there.
         let beyond = f64::from(at_rest.fascicle_length) > params.fascicle_domain().1;
         let expected = if beyond { Status::FASCICLE_OUTSIDE_DOMAIN } else { Status::empty() };
         let input = Input { activation: 0.0, path_length, stimulation_frequency: 0.0 };

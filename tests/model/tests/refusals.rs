@@ -26,8 +26,8 @@ fn fractions_add_to_one_within_a_millionth() {
     }
 }
 
-/// Force rises with velocity at every length that fascicles may have: at its shortest, its longest, and where the
-/// coefficients turn back between the two.
+/// Force rises with velocity at every length that fascicles may have: at its shortest, its longest,
+/// and where the coefficients turn back between the two.
 #[test]
 fn types_whose_force_falls_with_velocity_somewhere_are_refused() {
     let refused = |shortening: Option<[f64; 2]>, lengthening: Option<[f64; 3]>| {

@@ -1,4 +1,5 @@
-//! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it by name.
+//! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it by
+//! name.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode};

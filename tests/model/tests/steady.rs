@@ -20,7 +20,8 @@ fn force<S: Scalar>(newtons: f64) -> S::Force {
     S::ONE.force(&S::force_factor(newtons))
 }
 
-/// Of any muscle: the force that a stimulation holds is held by the stimulation that its inverse names.
+/// Of any muscle: the force that a stimulation holds is held by the stimulation that its inverse
+/// names.
 fn there_and_back<S: Scalar>(
     params: &MuscleParams<TYPES>,
     (activation, path, frequency): (f64, f64, f64),
@@ -96,7 +97,8 @@ fn unreachable_forces_are_flagged_with_the_nearest() {
     assert_eq!(found.activation, 0.0);
 }
 
-/// The greatest force that can be held, and whatever is near it, is held with all there is: never with nothing.
+/// The greatest force that can be held, and whatever is near it, is held with all there is: never
+/// with nothing.
 fn the_greatest<S: Scalar>() {
     let steady = SteadyFes::<S, 2>::build(&MUSCLE).expect("a muscle");
     for path in 0..=100 {
@@ -127,8 +129,8 @@ fn the_greatest_force_is_held_with_all_there_is() {
     the_greatest::<Fixed>();
 }
 
-/// With tendons of many fascicle lengths a force may be in balance where it is not held: that is not answered
-/// without a flag.
+/// With tendons of many fascicle lengths a force may be in balance where it is not held: that is
+/// not answered without a flag.
 #[test]
 fn where_there_are_several_balances_the_answer_holds_or_is_flagged() {
     let mut flagged = 0;

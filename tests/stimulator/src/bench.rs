@@ -53,7 +53,8 @@ pub const LIMITS: Limits =
     Limits { session_ms: 5_000, rest_ms: 600, charge_nc: 20_000, rms_ua: 10_000, ..BOARD };
 
 impl Bench {
-    /// At boot, with limits that tests reach soon, ticks of 1 ms, and two channels that ask for 20 mA.
+    /// At boot, with limits that tests reach soon, ticks of 1 ms, and two channels that ask for 20
+    /// mA.
     pub fn new(boot: Fault) -> Self {
         Self::with(LIMITS, 1000, boot)
     }
@@ -93,8 +94,8 @@ impl Bench {
         self.inject = None;
     }
 
-    /// A tick, and all that the timer does until the next one. True if current can flow at any time after the
-    /// tick itself.
+    /// A tick, and all that the timer does until the next one. True if current can flow at any time
+    /// after the tick itself.
     pub fn tick(&mut self) -> bool {
         self.counts() > 0
     }

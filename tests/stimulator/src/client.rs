@@ -1,4 +1,5 @@
-//! The host's end of a line to a device in this process: no clock, and what is refused is named as the device says.
+//! The host's end of a line to a device in this process: no clock, and what is refused is named as
+//! the device says.
 
 use firmware::link::{
     Answer, Frame, Info, LinkError, Message, NO_SESSION, Receiver, Refusal, Request, SessionNumber,

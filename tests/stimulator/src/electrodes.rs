@@ -124,8 +124,8 @@ impl SpiDevice for Converter {
             if high & 0xf0 != 0x30 {
                 electrodes.problems.push(format!("control bits {high:#x}"));
             }
-            // A word takes time: a current that begins or ends with any but a step's first lasts too long or too
-            // short.
+            // A word takes time: a current that begins or ends with any but a step's first lasts
+            // too long or too short.
             let counts = u16::from_be_bytes([high & 0x0f, low]);
             if electrodes.words > 0 && counts != electrodes.counts {
                 electrodes

@@ -1,5 +1,5 @@
-//! Every order in which higher levels interrupt lower ones: a run is repeated with each sequence of choices, the
-//! deepest changed first, until there is none left.
+//! Every order in which higher levels interrupt lower ones: a run is repeated with each sequence of
+//! choices, the deepest changed first, until there is none left.
 
 use std::cell::RefCell;
 
@@ -44,8 +44,8 @@ fn turn_back() -> bool {
     })
 }
 
-/// Repeats a run until it has made every sequence of choices, and returns how many there are. What goes wrong is
-/// told with the choices that led to it.
+/// Repeats a run until it has made every sequence of choices, and returns how many there are. What
+/// goes wrong is told with the choices that led to it.
 pub fn explore(mut run: impl FnMut() -> Result<(), String>) -> Result<u64, String> {
     TRAIL.set(Trail::default());
     let mut runs = 0;

@@ -1,5 +1,5 @@
-//! The firmware's three levels on fakes, of which a higher one may run before each access of a lower one to what
-//! they share. Whether it does is a choice of the explorer.
+//! The firmware's three levels on fakes, of which a higher one may run before each access of a
+//! lower one to what they share. Whether it does is a choice of the explorer.
 
 use crate::device::{Memory, Numbers};
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
@@ -145,7 +145,8 @@ impl Levels {
         levels
     }
 
-    /// From now on so many interrupts of the pulse timer, and of the tick, come where they are chosen to.
+    /// From now on so many interrupts of the pulse timer, and of the tick, come where they are
+    /// chosen to.
     pub fn explore(&self, pulse_interrupts: u32, tick_interrupts: u32) {
         self.pulse_interrupts.set(pulse_interrupts);
         self.tick_interrupts.set(tick_interrupts);
@@ -287,8 +288,8 @@ impl Levels {
         }
     }
 
-    /// A frame arrives. Its last byte is the one that does something: before the others, nothing is shared that is
-    /// not before it.
+    /// A frame arrives. Its last byte is the one that does something: before the others, nothing is
+    /// shared that is not before it.
     pub fn send(&self, request: &Request) {
         let hello = matches!(request, Request::Hello { .. });
         let session = if hello { NO_SESSION } else { self.session.get() };

@@ -1,4 +1,5 @@
-//! Tests of the stimulator's library live in `tests/stimulator/tests`: they build without `host-sim`.
+//! Tests of the stimulator's library live in `tests/stimulator/tests`: they build without
+//! `host-sim`.
 
 pub mod bench;
 pub mod client;

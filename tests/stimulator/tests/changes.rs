@@ -1,4 +1,5 @@
-//! Changes that somebody made on purpose and no test noticed: each has one now. `tests/planted` has the changes.
+//! Changes that somebody made on purpose and no test noticed: each has one now. `tests/planted` has
+//! the changes.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::NorFlash;
@@ -317,7 +318,8 @@ fn bytes_that_were_lost_break_the_frame_they_belong_to() {
     assert_eq!(report(&mut host).frames.broken, broken + 1);
 }
 
-/// A stimulus of no amplitude is none: its electrode is not looked at, and neither session nor sensor grow older.
+/// A stimulus of no amplitude is none: its electrode is not looked at, and neither session nor
+/// sensor grow older.
 #[test]
 fn a_stimulus_of_no_amplitude_is_no_stimulation() {
     let mut bench = Bench::running();
@@ -363,7 +365,8 @@ fn what_is_wrong_is_told_before_anybody_arms() {
     assert_eq!(bench.controller.state(), State::Latched(Fault::Boot));
 }
 
-/// Charge stimulates: a pulse that becomes four times wider begins with a quarter of the counts, and rises from there.
+/// Charge stimulates: a pulse that becomes four times wider begins with a quarter of the counts,
+/// and rises from there.
 #[test]
 fn a_pulse_that_becomes_wider_becomes_weaker_first() {
     let mut bench = Bench::new(Fault::Boot);
@@ -423,8 +426,9 @@ fn a_tick_that_hung_between_pulses_is_a_fault() {
     assert_eq!(bench.controller.state(), State::Armed);
 }
 
-/// Between two pulses that are due there is a step without current, for plans to be read; and a phase that is a bit
-/// longer than the longest step leaves no piece that is shorter than the shortest.
+/// Between two pulses that are due there is a step without current, for plans to be read; and a
+/// phase that is a bit longer than the longest step leaves no piece that is shorter than the
+/// shortest.
 #[test]
 fn steps_of_two_pulses_that_are_due_at_once() {
     for width_us in [100, 125, 126, 135, 144, 145, 146, 250, 251, 270, 271, 1000] {
@@ -442,7 +446,8 @@ fn steps_of_two_pulses_that_are_due_at_once() {
         };
         let width = u32::from(width_us);
         for channel in [0, 1] {
-            // Both phases: each in one piece, or in several, of which the last is as long as the shortest phase.
+            // Both phases: each in one piece, or in several, of which the last is as long as the
+            // shortest phase.
             let phase = match width {
                 ..=125 => vec![width],
                 126..=145 => vec![width - 20, 20],

@@ -1,5 +1,5 @@
-//! What the chip's flash, watchdog and noise generator do on a bad day, as their manual has it: parts in this process
-//! that stay busy, keep flags of old errors, or never take a change.
+//! What the chip's flash, watchdog and noise generator do on a bad day, as their manual has it:
+//! parts in this process that stay busy, keep flags of old errors, or never take a change.
 
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 use firmware::flash::{Flash, FlashController, FlashError, MOST_ERASE_MS, MOST_STORE_MS};
@@ -223,8 +223,8 @@ fn addresses_that_there_are_not_are_refused() {
     assert_eq!(flash.controller().operations, 0);
 }
 
-/// Each thing that can go wrong while storing has its name, and what was stored before is still there; then it
-/// goes on.
+/// Each thing that can go wrong while storing has its name, and what was stored before is still
+/// there; then it goes on.
 #[test]
 fn why_something_was_not_stored_is_named() {
     use Fails::{Never, Not, Silently, WithFlag};

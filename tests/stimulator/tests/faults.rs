@@ -1,5 +1,5 @@
-//! Every fault, injected into a stimulator that is giving pulses: how long until no current can flow, what is
-//! latched, and what it takes to arm again.
+//! Every fault, injected into a stimulator that is giving pulses: how long until no current can
+//! flow, what is latched, and what it takes to arm again.
 
 use firmware::Stimulus;
 use firmware::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
@@ -206,8 +206,9 @@ fn an_output_that_stops_answering_is_seen_by_the_next_step() {
             electrodes.broken_converter = break_it == 0;
             electrodes.broken_pins = break_it == 1;
         }
-        // Nothing that could still be put in neutral is left as it was; the next tick latches. Pins are spoken to where
-        // they turn, which is the third step: what is left of the phase, gap, turning.
+        // Nothing that could still be put in neutral is left as it was; the next tick latches. Pins
+        // are spoken to where they turn, which is the third step: what is left of the phase, gap,
+        // turning.
         for _ in 0..3 {
             bench.run_out();
         }
@@ -258,7 +259,8 @@ fn a_pulse_timer_that_overruns_is_a_fault() {
     assert_eq!(bench.controller.state(), State::Latched(Fault::Deadline));
 }
 
-/// A pulse that becomes wider becomes weaker first: its charge rises by no more per pulse than an amplitude's may.
+/// A pulse that becomes wider becomes weaker first: its charge rises by no more per pulse than an
+/// amplitude's may.
 #[test]
 fn a_wider_pulse_is_no_way_round_the_rise() {
     let mut bench = Bench::running();
@@ -294,7 +296,8 @@ fn a_sensor_that_is_stuck_is_seen_in_spite_of_pauses() {
         bench.tick();
         bench.controller.state() == State::Armed
     });
-    // More than two seconds of stimulation, every other half second, each with the 25 ms after its last pulse.
+    // More than two seconds of stimulation, every other half second, each with the 25 ms after its
+    // last pulse.
     let ticks = ticks.count();
     assert!((3_900..=3_902).contains(&ticks), "{ticks}");
     assert_eq!(bench.controller.state(), State::Latched(Fault::SensorStuck));

@@ -1,5 +1,5 @@
-//! Frames of every length: each comes out of the receiver as it went into the encoder, whatever stands on the line
-//! before and after it, and whatever of that is lost.
+//! Frames of every length: each comes out of the receiver as it went into the encoder, whatever
+//! stands on the line before and after it, and whatever of that is lost.
 
 use firmware::link::{
     LinkError, MOST_CONTENT, MOST_FRAME, NO_SESSION, Receiver, SessionNumber, encode,
@@ -17,7 +17,8 @@ impl Serialize for Raw<'_> {
     }
 }
 
-/// What the receiver makes of bytes: of each frame, its session, sequence number and content, or why it is none.
+/// What the receiver makes of bytes: of each frame, its session, sequence number and content, or
+/// why it is none.
 type Received = Result<(SessionNumber, u16, Vec<u8>), LinkError>;
 
 fn received(receiver: &mut Receiver, session: SessionNumber, bytes: &[u8]) -> Vec<Received> {
@@ -33,7 +34,8 @@ fn received(receiver: &mut Receiver, session: SessionNumber, bytes: &[u8]) -> Ve
 /// A byte, of its place and of the length.
 type Fill = fn(usize, usize) -> u8;
 
-/// COBS counts bytes between zeros up to 254: runs around that, and zeros where a run begins or ends.
+/// COBS counts bytes between zeros up to 254: runs around that, and zeros where a run begins or
+/// ends.
 fn fills() -> Vec<(&'static str, Fill)> {
     vec![
         ("zeros", |_, _| 0),
@@ -104,7 +106,8 @@ fn slices_that_end_a_run_of_254_arrive() {
     }
 }
 
-/// Nothing longer than the longest message is a frame, though there be no more bytes than in a frame with its zero.
+/// Nothing longer than the longest message is a frame, though there be no more bytes than in a
+/// frame with its zero.
 #[test]
 fn a_frame_of_a_longer_message_than_any_is_too_long() {
     let mut receiver = Receiver::new();
@@ -116,8 +119,8 @@ fn a_frame_of_a_longer_message_than_any_is_too_long() {
     assert_eq!(received(&mut receiver, 9, &good), [Ok((9, 7, vec![3]))]);
 }
 
-/// Any byte of three frames lost, with and without the line's noticing it: what arrives was sent, and the frames
-/// that it was not lost from arrive, but for the one after a lost end.
+/// Any byte of three frames lost, with and without the line's noticing it: what arrives was sent,
+/// and the frames that it was not lost from arrive, but for the one after a lost end.
 #[test]
 fn a_lost_byte_costs_the_frames_that_it_was_lost_from() {
     let content = [vec![1; 247], vec![0; 20], vec![2; 250], vec![0; 3]].concat();

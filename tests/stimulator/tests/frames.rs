@@ -120,8 +120,8 @@ fn of_version(version: u8, session: SessionNumber, sequence: u16, content: &[u8]
     frame
 }
 
-/// A host of version 1 greets with nothing but the request's number: it is told which version the device has, and
-/// begins no session.
+/// A host of version 1 greets with nothing but the request's number: it is told which version the
+/// device has, and begins no session.
 #[test]
 fn a_host_of_version_1_is_refused_by_name() {
     let mut device = InProcess::boot(Memory::new());
@@ -245,8 +245,9 @@ impl Noise {
     }
 }
 
-/// Ten million frames, most of them good ones that something has happened to: the receiver gives a frame only
-/// if it has the bytes of one that was sent, and the session a request only with the number that is due.
+/// Ten million frames, most of them good ones that something has happened to: the receiver gives a
+/// frame only if it has the bytes of one that was sent, and the session a request only with the
+/// number that is due.
 #[test]
 fn ten_million_frames_and_none_is_acted_upon_that_was_not_meant() {
     let requests = [

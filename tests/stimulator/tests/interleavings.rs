@@ -1,9 +1,11 @@
-//! Every order in which pulse timer, tick and link interrupt each other around a fault, and around the queues between
-//! tick and link: the firmware's own code, with a choice before each access to what they share.
+//! Every order in which pulse timer, tick and link interrupt each other around a fault, and around
+//! the queues between tick and link: the firmware's own code, with a choice before each access to
+//! what they share.
 //!
-//! Interrupts of the pulse timer come where they are chosen to, two more in the tick of a fault than `VM_INTERRUPTS`
-//! says, or as many as it says anywhere from the fault until pulses flow again: 1 where it is not set. A run leaves 7 KB
-//! behind, for what levels hand each other are statics: with 2 there have to be 8 GB.
+//! Interrupts of the pulse timer come where they are chosen to, two more in the tick of a fault
+//! than `VM_INTERRUPTS` says, or as many as it says anywhere from the fault until pulses flow
+//! again: 1 where it is not set. A run leaves 7 KB behind, for what levels hand each other are
+//! statics: with 2 there have to be 8 GB.
 
 use firmware::link::{Answer, Readings, Request, RowInputs};
 use firmware::safety::{CHANNELS, Fault, State};
@@ -19,7 +21,8 @@ const LIMITS: Limits = Limits { rise_ua: 50_000, ..BOARD };
 /// Counts of 10 mA and of 20 mA.
 const BEFORE: u16 = 819;
 const AFTER: u16 = 1638;
-/// Where in a pulse, or before it, the tick of a fault may begin; a pulse and a bit; and from one pulse to the next, µs.
+/// Where in a pulse, or before it, the tick of a fault may begin; a pulse and a bit; and from one
+/// pulse to the next, µs.
 const PLACES: u8 = 16;
 const PULSE_US: u32 = 560;
 const PERIOD_US: u32 = 10_070;
@@ -41,8 +44,8 @@ fn arm(levels: &Levels, fault: Fault) {
     }
 }
 
-/// Armed, with pulses of 10 mA on one channel. The next tick is due while a pulse flows, or one begins in its time:
-/// which of it, is its place.
+/// Armed, with pulses of 10 mA on one channel. The next tick is due while a pulse flows, or one
+/// begins in its time: which of it, is its place.
 fn running(attends: bool, place: u8) -> Rc<Levels> {
     let levels = Levels::boot(LIMITS, attends);
     arm(&levels, Fault::Boot);
@@ -79,9 +82,11 @@ enum Source {
     Output,
 }
 
-/// A fault from a source, at any step of the pulse timer, and everything until pulses of another amplitude flow.
+/// A fault from a source, at any step of the pulse timer, and everything until pulses of another
+/// amplitude flow.
 ///
-/// So many interrupts of the pulse timer come where they are chosen to in the tick of the fault, or else anywhere.
+/// So many interrupts of the pulse timer come where they are chosen to in the tick of the fault, or
+/// else anywhere.
 fn fault_and_again(
     source: Source,
     (in_tick, anywhere): (u32, u32),
@@ -176,8 +181,8 @@ fn whatever_interrupts_whatever_a_fault_ends_all_current_and_all_plans() {
     assert!(all > 5_000);
 }
 
-/// A drive of before the second step of arming, the same as before the stop or another one: it flows, whatever
-/// interrupts the tick that arms.
+/// A drive of before the second step of arming, the same as before the stop or another one: it
+/// flows, whatever interrupts the tick that arms.
 fn armed_with_a_drive(pulse_interrupts: u32) -> Result<(), String> {
     let levels = running(true, choose(PLACES));
     let no_supply = Request::Readings(Readings { supply_mv: 1, ..READINGS });
@@ -217,8 +222,8 @@ fn a_tick_that_does_not_call_for_the_pulse_timer_is_found() {
     assert!(problem.contains("current that no tick allows"), "{problem}");
 }
 
-/// Requests, rows and traces, with ticks between any two accesses of the link, and a pulse timer between any two of
-/// those.
+/// Requests, rows and traces, with ticks between any two accesses of the link, and a pulse timer
+/// between any two of those.
 fn orders_and_rows(pulse_interrupts: u32, tick_interrupts: u32) -> Result<(), String> {
     let levels = running(true, 0);
     let rows = |first| Request::Rows {

@@ -329,7 +329,8 @@ fn a_channel_has_one_electrode_and_no_drive_beside_it() {
     assert_eq!(reason, "ChannelTaken { channel: 0, place: 1 }");
     let reason = taken(host.order(&Request::Drive([Some(STIMULUS), None, None, None])));
     assert_eq!(reason, "ChannelTaken { channel: 0, place: 1 }");
-    // Its own place may have it again, other channels may be driven, and it is free when it is given up.
+    // Its own place may have it again, other channels may be driven, and it is free when it is
+    // given up.
     host.order(&Request::Upload { place: 1, upload }).expect("the same muscle");
     host.order(&Request::Drive([None, Some(STIMULUS), None, None])).expect("a free channel");
     let elsewhere = Electrode { channel: 3, ..ELECTRODE };

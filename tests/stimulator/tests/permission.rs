@@ -1,4 +1,5 @@
-//! For how long the last tick's permission holds when no other tick comes, at every length of a tick.
+//! For how long the last tick's permission holds when no other tick comes, at every length of a
+//! tick.
 
 use firmware::safety::{Fault, Requested, State};
 use firmware::{Limits, Step, Stimulus};
@@ -30,7 +31,8 @@ fn armed(tick_us: u32, stimulus: Stimulus) -> Bench {
     bench
 }
 
-/// Whatever the pulse timer does when a tick hangs, at the beginning, in the middle or at the end of a pulse.
+/// Whatever the pulse timer does when a tick hangs, at the beginning, in the middle or at the end
+/// of a pulse.
 #[test]
 fn current_is_off_two_ticks_after_the_last_tick() {
     for tick_us in TICKS_US {
@@ -39,7 +41,8 @@ fn current_is_off_two_ticks_after_the_last_tick() {
             for ticks in 40..100 {
                 let mut bench = armed(tick_us, stimulus);
                 bench.flows(ticks);
-                // The tick that runs last, and how long after it a current ends that flows then or later.
+                // The tick that runs last, and how long after it a current ends that flows then or
+                // later.
                 bench.control();
                 let last_us = (bench.tick - 1) * tick_us;
                 bench.hangs = true;

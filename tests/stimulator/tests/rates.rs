@@ -15,7 +15,8 @@ fn most_in_a_second(bench: &Bench, channel: usize) -> usize {
     (0..times.len()).map(within).max().unwrap_or(0)
 }
 
-/// Ticks of 1 ms, with that limit on the frequency, while a request is made of the number of each tick.
+/// Ticks of 1 ms, with that limit on the frequency, while a request is made of the number of each
+/// tick.
 fn run(
     most_tenths_pps: u16,
     ticks: u32,

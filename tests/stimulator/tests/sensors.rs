@@ -46,7 +46,8 @@ fn a_path_may_move_at_its_speed_from_reading_to_reading() {
     }
 }
 
-/// What no sensor says for a while may be elsewhere when it says something again; a number that is repeated is news.
+/// What no sensor says for a while may be elsewhere when it says something again; a number that is
+/// repeated is news.
 #[test]
 fn the_time_between_readings_begins_with_the_last_number() {
     let say = |host: &mut Host, path_um| {
@@ -69,7 +70,8 @@ fn the_time_between_readings_begins_with_the_last_number() {
     assert_eq!(report(&mut host).state, State::Armed);
 }
 
-/// By readings of every tick, and ticks of every length: as far as the speed says, but a µm at least.
+/// By readings of every tick, and ticks of every length: as far as the speed says, but a µm at
+/// least.
 #[test]
 fn the_least_speed_is_no_speed_of_nothing() {
     for tick_us in [500, 1000, 2000] {
@@ -96,7 +98,8 @@ fn the_least_speed_is_no_speed_of_nothing() {
         let most_um = 3 * tick_us as i32 / 1000;
         assert_eq!(state(3, most_um, 1), State::Armed, "3 mm/s at {tick_us} us");
         assert_eq!(state(3, most_um + 1, 1), jump, "3 mm/s at {tick_us} us");
-        // Of readings that come each tick, none is old: a step is a jump however long nothing moved.
+        // Of readings that come each tick, none is old: a step is a jump however long nothing
+        // moved.
         assert_eq!(state(3, most_um + 1, 20), jump, "3 mm/s at {tick_us} us");
         assert_eq!(state(u32::MAX, 1_000, 1), State::Armed);
     }

@@ -1,5 +1,5 @@
-//! The stimulator's pulses, as a converter and pins see them: no net charge, one channel at a time, nothing
-//! switched under current.
+//! The stimulator's pulses, as a converter and pins see them: no net charge, one channel at a time,
+//! nothing switched under current.
 
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTransaction};

@@ -1,4 +1,5 @@
-//! Power that is lost at any byte of a write, or of an erasure: what was stored before is still there.
+//! Power that is lost at any byte of a write, or of an erasure: what was stored before is still
+//! there.
 
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -207,7 +208,8 @@ fn a_memory_that_cannot_be_read_loses_nothing() {
     }
 }
 
-/// The same from outside: an upload under a power that fails leaves the muscle of before, or the new one.
+/// The same from outside: an upload under a power that fails leaves the muscle of before, or the
+/// new one.
 #[test]
 fn an_upload_that_is_cut_leaves_a_muscle() {
     let upload = |mass: f64| {

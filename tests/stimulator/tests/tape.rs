@@ -52,7 +52,8 @@ fn recorded(randomness: Box<dyn Randomness>) -> (Vec<(u32, Vec<u8>)>, u32) {
     (tape, session)
 }
 
-/// Plays a tape to a device that has just booted, each byte in the tick in which it came: the most counts that flow.
+/// Plays a tape to a device that has just booted, each byte in the tick in which it came: the most
+/// counts that flow.
 fn played(tape: &[(u32, Vec<u8>)], randomness: Box<dyn Randomness>) -> (u16, InProcess<Memory>) {
     let mut device = booted(randomness);
     for (tick, bytes) in tape {
@@ -85,11 +86,13 @@ fn a_tape_played_after_a_reset_at_the_same_tick_does_nothing() {
         // All but the greetings: 4 requests, and 20 times the readings.
         assert_eq!(report.frames.broken, 24, "seed {seed}");
     }
-    // The same numbers again, and the tape is what the device waits for: it is the numbers that keep it out.
+    // The same numbers again, and the tape is what the device waits for: it is the numbers that
+    // keep it out.
     assert!(played(&tape, Box::new(Numbers(1))).0 > 0);
 }
 
-/// What an emulator has instead is no more than it says: to the poll the same boot, and the tape plays.
+/// What an emulator has instead is no more than it says: to the poll the same boot, and the tape
+/// plays.
 #[test]
 fn without_a_generator_a_boot_that_is_repeated_to_the_poll_repeats_its_session() {
     let (tape, session) = recorded(Box::new(PollCount));

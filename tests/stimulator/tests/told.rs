@@ -1,4 +1,5 @@
-//! What a host is told of a muscle that it stores is what the next boot restores, whatever memory fails to do.
+//! What a host is told of a muscle that it stores is what the next boot restores, whatever memory
+//! fails to do.
 
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -117,7 +118,8 @@ fn restored(memory: &RamFlash<BYTES>) -> Option<Vec<u8>> {
     Slots::new(memory.clone(), &mut buffer).load().map(<[u8]>::to_vec)
 }
 
-/// Stores a content while operations fail: what was told, what a boot restores, and how many operations it took.
+/// Stores a content while operations fail: what was told, what a boot restores, and how many
+/// operations it took.
 fn store(
     memory: &RamFlash<BYTES>,
     content: &[u8],
@@ -236,7 +238,8 @@ fn what_is_restored_could_have_been_uploaded() {
         assert_eq!(are, there);
         assert_eq!(usize::from(restored), there.iter().filter(|there| **there).count());
     }
-    // A channel is free whose electrode was not restored, and does not come back with the next boot.
+    // A channel is free whose electrode was not restored, and does not come back with the next
+    // boot.
     let (mut host, ..) = boot(stored(&[of_channel(2), of_channel(2)]));
     let free = Some(STIMULUS);
     host.order(&Request::Drive([None, None, None, free])).expect("a free channel");

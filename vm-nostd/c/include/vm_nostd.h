@@ -110,7 +110,8 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 #define VM_STATUS_FASCICLE_VELOCITY_LIMITED 256
 
 /**
- * The residual of the force balance was too large, as when the path jumps: the force is less accurate.
+ * The residual of the force balance was too large, as when the path jumps: the force is less
+ * accurate.
  */
 #define VM_STATUS_MECHANICS_UNSETTLED 512
 
@@ -352,7 +353,8 @@ typedef struct {
    */
   double tendon_length_m;
   /**
-   * Longest musculotendon path L_mt_max, m. It scales the parallel elastic element; paths may be longer.
+   * Longest musculotendon path L_mt_max, m. It scales the parallel elastic element; paths may be
+   * longer.
    */
   double max_path_length_m;
   /**
@@ -509,7 +511,8 @@ extern "C" {
 
 /**
  * Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
- * `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and limits.
+ * `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and
+ * limits.
  */
 VmResult vm_f32_build(VmMuscleF32 *muscle,
                       size_t size,
@@ -519,10 +522,10 @@ VmResult vm_f32_build(VmMuscleF32 *muscle,
                       VmError *error);
 
 /**
- * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is unchanged.
+ * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
+ * unchanged.
  */
-VmResult vm_f32_rest(VmMuscleF32 *muscle,
-                     float path_length_m);
+VmResult vm_f32_rest(VmMuscleF32 *muscle, float path_length_m);
 
 /**
  * Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
@@ -535,23 +538,21 @@ VmResult vm_f32_step(VmMuscleF32 *muscle, const VmInputF32 *input, VmOutputF32 *
 VmResult vm_f32_save(const VmMuscleF32 *muscle, VmStateF32 *saved);
 
 /**
- * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step, VM_RESULT_STATE
- * if it is out of range; the muscle is then unchanged.
+ * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
+ * VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
  */
-VmResult vm_f32_restore(VmMuscleF32 *muscle,
-                        const VmStateF32 *saved);
+VmResult vm_f32_restore(VmMuscleF32 *muscle, const VmStateF32 *saved);
 
 /**
- * Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick.
- * Firmware compares them to detect a flipped bit.
+ * Checksums of a muscle's coefficients, which never change, and of its state, which changes with
+ * every tick. Firmware compares them to detect a flipped bit.
  */
-VmResult vm_f32_checksums(const VmMuscleF32 *muscle,
-                          uint32_t *coefficients,
-                          uint32_t *state);
+VmResult vm_f32_checksums(const VmMuscleF32 *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
  * Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
- * `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and limits.
+ * `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and
+ * limits.
  */
 VmResult vm_fixed_build(VmMuscleFixed *muscle,
                         size_t size,
@@ -561,10 +562,10 @@ VmResult vm_fixed_build(VmMuscleFixed *muscle,
                         VmError *error);
 
 /**
- * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is unchanged.
+ * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
+ * unchanged.
  */
-VmResult vm_fixed_rest(VmMuscleFixed *muscle,
-                       int32_t path_length_um);
+VmResult vm_fixed_rest(VmMuscleFixed *muscle, int32_t path_length_um);
 
 /**
  * Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
@@ -577,35 +578,28 @@ VmResult vm_fixed_step(VmMuscleFixed *muscle, const VmInputFixed *input, VmOutpu
 VmResult vm_fixed_save(const VmMuscleFixed *muscle, VmStateFixed *saved);
 
 /**
- * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step, VM_RESULT_STATE
- * if it is out of range; the muscle is then unchanged.
+ * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
+ * VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
  */
-VmResult vm_fixed_restore(VmMuscleFixed *muscle,
-                          const VmStateFixed *saved);
+VmResult vm_fixed_restore(VmMuscleFixed *muscle, const VmStateFixed *saved);
 
 /**
- * Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick.
- * Firmware compares them to detect a flipped bit.
+ * Checksums of a muscle's coefficients, which never change, and of its state, which changes with
+ * every tick. Firmware compares them to detect a flipped bit.
  */
-VmResult vm_fixed_checksums(const VmMuscleFixed *muscle,
-                            uint32_t *coefficients,
-                            uint32_t *state);
+VmResult vm_fixed_checksums(const VmMuscleFixed *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are one half each.
- * Null pointers are skipped.
+ * Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are
+ * one half each. Null pointers are skipped.
  */
-void vm_params_paper(VmElements *elements,
-                     VmFiber *slow,
-                     VmFiber *fast);
+void vm_params_paper(VmElements *elements, VmFiber *slow, VmFiber *fast);
 
 /**
- * Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are one half each.
- * Null pointers are skipped.
+ * Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are
+ * one half each. Null pointers are skipped.
  */
-void vm_params_human(VmElements *elements,
-                     VmFiber *slow,
-                     VmFiber *fast);
+void vm_params_human(VmElements *elements, VmFiber *slow, VmFiber *fast);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -55,7 +55,8 @@ pub struct VmStateFixed {
 }
 
 /// Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
-/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and limits.
+/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and
+/// limits.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_build(
@@ -95,7 +96,8 @@ pub extern "C" fn vm_fixed_build(
     }
 }
 
-/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is unchanged.
+/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
+/// unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_rest(
@@ -162,8 +164,8 @@ pub extern "C" fn vm_fixed_save(
     VmResult::Ok
 }
 
-/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step, VM_RESULT_STATE
-/// if it is out of range; the muscle is then unchanged.
+/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
+/// VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_restore(
@@ -185,8 +187,8 @@ pub extern "C" fn vm_fixed_restore(
     restored.err().unwrap_or(VmResult::Ok)
 }
 
-/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with every tick.
-/// Firmware compares them to detect a flipped bit.
+/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with
+/// every tick. Firmware compares them to detect a flipped bit.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_fixed_checksums(

@@ -1,7 +1,8 @@
 //! vm-nostd for C.
 //!
-//! Arguments are checked: no pointer may be null, sizes must be those of this library, and a muscle must have
-//! been built. The only `unsafe` is in the exported names, and where [`slot`] reads a muscle that it has built.
+//! Arguments are checked: no pointer may be null, sizes must be those of this library, and a muscle
+//! must have been built. The only `unsafe` is in the exported names, and where [`slot`] reads a
+//! muscle that it has built.
 #![cfg_attr(target_os = "none", no_std)]
 
 mod f32;

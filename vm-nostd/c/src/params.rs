@@ -18,7 +18,8 @@ pub struct VmMuscleParams {
     pub fascicle_length_m: f64,
     /// Optimal tendon length L_se0, m; 0.0005 to 2.
     pub tendon_length_m: f64,
-    /// Longest musculotendon path L_mt_max, m. It scales the parallel elastic element; paths may be longer.
+    /// Longest musculotendon path L_mt_max, m. It scales the parallel elastic element; paths may be
+    /// longer.
     pub max_path_length_m: f64,
     /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
     pub recruitment_saturation: f64,
@@ -270,8 +271,8 @@ impl VmFiber {
     }
 }
 
-/// Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are one half each.
-/// Null pointers are skipped.
+/// Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are
+/// one half each. Null pointers are skipped.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_params_paper(
@@ -284,8 +285,8 @@ pub extern "C" fn vm_params_paper(
     give(fast, || VmFiber::of(&paper_table_1::FAST));
 }
 
-/// Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are one half each.
-/// Null pointers are skipped.
+/// Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are
+/// one half each. Null pointers are skipped.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn vm_params_human(

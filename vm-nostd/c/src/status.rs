@@ -20,7 +20,8 @@ pub const VM_STATUS_FASCICLE_OUTSIDE_DOMAIN: u16 = 64;
 pub const VM_STATUS_FASCICLE_LENGTH_LIMITED: u16 = 128;
 /// Fascicle velocity was clamped to the state range.
 pub const VM_STATUS_FASCICLE_VELOCITY_LIMITED: u16 = 256;
-/// The residual of the force balance was too large, as when the path jumps: the force is less accurate.
+/// The residual of the force balance was too large, as when the path jumps: the force is less
+/// accurate.
 pub const VM_STATUS_MECHANICS_UNSETTLED: u16 = 512;
 /// Tendon force saturated in fixed point.
 pub const VM_STATUS_TENDON_FORCE_LIMITED: u16 = 1024;

@@ -247,8 +247,8 @@ float!(f64, u64, double, 2);
 mod tests {
     use super::*;
 
-    /// Calls `check` with a residual, a line, a steepness and half a curvature, over the ranges of valid
-    /// muscles.
+    /// Calls `check` with a residual, a line, a steepness and half a curvature, over the ranges of
+    /// valid muscles.
     fn over_balances(check: impl Fn(f64, f64, f64, f64)) {
         for line in [2e-3, 0.05, 1.0, 50.0] {
             for steepness in [1e-5, 0.02, 1.0, 30.0] {
@@ -280,8 +280,8 @@ mod tests {
             let found = r.hyperbola_root(l, s, h);
             let [r, l, s, h] = [r, l, s, h].map(f64::from);
             let exact = r.hyperbola_root(l, s, h);
-            // Next to a large product the line's term is rounded, and in the secant the steepness': if the
-            // least steepness stands for 0, few of its bits remain.
+            // Next to a large product the line's term is rounded, and in the secant the steepness':
+            // if the least steepness stands for 0, few of its bits remain.
             let bent = (r * h).abs();
             let of_root = 1e-5 * (1.0 + bent / (l * s));
             let of_share = of_root + 2.2e-6 * bent / (s * s);

@@ -1,5 +1,5 @@
-//! A muscle in an embassy task, woken by the tick. Other tasks may delay it: for a hard tick, spawn it on an
-//! `InterruptExecutor`, or use the RTIC example.
+//! A muscle in an embassy task, woken by the tick. Other tasks may delay it: for a hard tick, spawn
+//! it on an `InterruptExecutor`, or use the RTIC example.
 //!
 //! The chip is an LM3S6965. It has no floating-point unit: the muscle is in fixed point.
 #![no_std]

@@ -1,7 +1,7 @@
 //! A muscle in a hard RTIC tick, which interrupts everything else.
 //!
-//! The chip is an LM3S6965, whose peripheral crate is small. It has no floating-point unit: the muscle is in
-//! fixed point.
+//! The chip is an LM3S6965, whose peripheral crate is small. It has no floating-point unit: the
+//! muscle is in fixed point.
 #![no_std]
 #![no_main]
 

@@ -35,9 +35,9 @@ impl Factor {
         Self { mantissa, shift: shift as u8 }
     }
 
-    /// Units times the factor, rounded, within 0.51 units and 2^-31 of the product (of a factor below 2^-32, half its
-    /// mantissa's last bit); saturated. It rounds to nearest because truncation of
-    /// lengths in every tick would make the fascicles drift.
+    /// Units times the factor, rounded, within 0.51 units and 2^-31 of the product (of a factor
+    /// below 2^-32, half its mantissa's last bit); saturated. It rounds to nearest because
+    /// truncation of lengths in every tick would make the fascicles drift.
     ///
     /// # Scaling and overflow
     /// Of a factor below 1/2, all of the product's low word is shifted out, and its high word, at

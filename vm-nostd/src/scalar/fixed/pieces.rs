@@ -16,8 +16,9 @@ const fn node(value: f64, slope: f64) -> Node {
     ((value * UNITS + 0.5) as i32, (slope * UNITS / (1 << NODE_BITS) as f64 + 0.5) as i32)
 }
 
-/// Cubic Hermite interpolation at a `place` counted from the first node in Q8.24; value, and slope per piece,
-/// in Q2.30. Beyond the last node the result is that of the last piece, which must be flat.
+/// Cubic Hermite interpolation at a `place` counted from the first node in Q8.24; value, and slope
+/// per piece, in Q2.30. Beyond the last node the result is that of the last piece, which must be
+/// flat.
 ///
 /// # Scaling and overflow
 /// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
@@ -38,7 +39,8 @@ fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) 
     (value, slope)
 }
 
-/// Converts a value and a slope per piece in Q2.30 to a value and a slope per unit in Q8.24; rounds.
+/// Converts a value and a slope per piece in Q2.30 to a value and a slope per unit in Q8.24;
+/// rounds.
 fn in_units((value, slope): (i32, i32)) -> (i32, i32) {
     let rounded = |value: i32, bits: u32| (value + (1 << (bits - 1))) >> bits;
     (rounded(value, 6), rounded(slope, 6 - NODE_BITS))

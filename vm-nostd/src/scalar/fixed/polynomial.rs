@@ -7,8 +7,8 @@ use super::number::high;
 /// within 16 units, and the slope, in which every cut value is multiplied again, within 72.
 ///
 /// # Scaling and overflow
-/// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of terms, and
-/// of the slope's terms, add to 100 at most: so does what is summed up at any step.
+/// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of
+/// terms, and of the slope's terms, add to 100 at most: so does what is summed up at any step.
 #[inline(always)]
 pub(super) fn at(x: i32, terms: impl DoubleEndedIterator<Item = i32>) -> (i32, i32) {
     let share = x << 7;

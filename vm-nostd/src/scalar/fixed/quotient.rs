@@ -4,13 +4,13 @@ use super::factor::Factor;
 use super::mantissa;
 use super::number::{FRACTION, exact};
 
-/// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients are within
-/// 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
+/// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients
+/// are within 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
 ///
 /// # Scaling and overflow
-/// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in Q1.31; its
-/// reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the numerator has to
-/// be multiplied with. That shift is 7 to 37 bits.
+/// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in
+/// Q1.31; its reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the
+/// numerator has to be multiplied with. That shift is 7 to 37 bits.
 pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     let denominator = denominator.max(1) as u32;
     let zeros = denominator.leading_zeros();
@@ -23,12 +23,13 @@ pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
     reciprocal_factor(denominator).times(numerator)
 }
 
-/// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and below it
-/// is the greatest number.
+/// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and
+/// below it is the greatest number.
 ///
 /// # Scaling and overflow
-/// x, 2^-7 at least, where 1/x is 2^7 and saturates, and shifted left by z bits, up to 14, until its first
-/// bit is set, is a mantissa; its reciprocal in Q1.31, shifted right by 14 - z bits, is Q8.24.
+/// x, 2^-7 at least, where 1/x is 2^7 and saturates, and shifted left by z bits, up to 14, until
+/// its first bit is set, is a mantissa; its reciprocal in Q1.31, shifted right by 14 - z bits, is
+/// Q8.24.
 pub(super) fn reciprocal(x: i32) -> i32 {
     const LEAST: i32 = 1 << (FRACTION - 7);
     let x = x.max(LEAST) as u32;
@@ -36,8 +37,8 @@ pub(super) fn reciprocal(x: i32) -> i32 {
     scaled_back(mantissa::reciprocal(x << zeros), 14 - zeros)
 }
 
-/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right by up to 22 bits, rounded; 2^31, not
-/// shifted, becomes a unit less.
+/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right by up to 22 bits, rounded; 2^31,
+/// not shifted, becomes a unit less.
 #[inline(always)]
 fn scaled_back(reciprocal: u32, shift: u32) -> i32 {
     ((reciprocal + (1 << shift >> 1)) >> shift).min(i32::MAX as u32) as i32
@@ -49,7 +50,8 @@ pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
-/// 1/(1 + d v) in Q8.24, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts as that, to 2^-16.
+/// 1/(1 + d v) in Q8.24, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts as that, to
+/// 2^-16.
 ///
 /// # Scaling and overflow
 /// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.

@@ -51,7 +51,8 @@ pub(super) fn soon_done(x: f32) -> f32 {
     x * (first + square * (second + square * third))
 }
 
-/// √x of a number that is not negative, within 5e-6 of its value from 1e-37 on; at most 1e-18 below.
+/// √x of a number that is not negative, within 5e-6 of its value from 1e-37 on; at most 1e-18
+/// below.
 #[inline(always)]
 pub(super) fn square_root(x: f32) -> f32 {
     // 1/√x to 3.5 % from the exponent's half; each of Newton's steps squares the error.
@@ -136,10 +137,11 @@ static SOFTPLUS: [[f32; 4]; PIECES] = {
     table
 };
 
-/// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within 2e-5.
+/// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within
+/// 2e-5.
 ///
-/// Far below 0 it is e^x with relative accuracy: the equilibrium of two such forces in a slack muscle depends
-/// on their ratio.
+/// Far below 0 it is e^x with relative accuracy: the equilibrium of two such forces in a slack
+/// muscle depends on their ratio.
 #[inline(always)]
 pub(super) fn softplus(x: f32) -> (f32, f32) {
     // Both tails are equal apart from x.
@@ -177,8 +179,8 @@ static WEIBULL: [[f32; 4]; PIECES] = {
 };
 const _: () = assert!((WEIBULL_MOST - WEIBULL_LEAST) * WEIBULL_PER_UNIT == PIECES as i32 - 2);
 
-/// 1 - e^-e^x, within 2e-6 of its value, and its slope, within 3e-5, for -15 <= x <= 3; beyond, what it
-/// is at the nearest of these, and 0.
+/// 1 - e^-e^x, within 2e-6 of its value, and its slope, within 3e-5, for -15 <= x <= 3; beyond,
+/// what it is at the nearest of these, and 0.
 #[inline(always)]
 pub(super) fn weibull(x: f32) -> (f32, f32) {
     const FIRST: i32 = 1 - WEIBULL_LEAST * WEIBULL_PER_UNIT;
