@@ -333,7 +333,8 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::Empty => "no muscle is at that place".to_owned(),
         Refusal::NoRoom { room } => format!("room for {room} rows"),
         Refusal::NotStored(NotStored::Unknown) => {
-            "flash failed twice: the next boot restores these muscles or those stored before".to_owned()
+            "flash failed twice: the next boot restores these muscles or those stored before"
+                .to_owned()
         }
         Refusal::NotStored(reason) => {
             let reason = match reason {

@@ -108,7 +108,7 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
 /// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
 pub fn stack(report: &stack::Report) -> String {
     let mut text =
-        String::from("| what runs | priority | stack, B | most of it in |\n|---|---:|---:|---|\n");
+        String::from("| task | priority | stack, B | largest frame |\n|---|---:|---:|---|\n");
     for stack::Entry { task, priority, deepest } in &report.entries {
         let most = deepest.path.iter().max_by_key(|step| step.bytes).filter(|step| step.bytes > 0);
         let most =
@@ -120,14 +120,14 @@ pub fn stack(report: &stack::Report) -> String {
 
 /// The table: what of the stimulator's memory goes where.
 pub fn memory(report: &stack::Report) -> String {
-    let mut text = String::from("| of memory | B | % |\n|---|---:|---:|\n");
+    let mut text = String::from("| RAM | B | % |\n|---|---:|---:|\n");
     for (what, bytes) in [
         ("statics", report.statics),
         ("deepest stack", report.stack),
-        ("of that, pushed by the core", report.core_frames),
+        ("of that, exception frames", report.core_frames),
         ("free", report.free),
         ("all", report.ram),
-        ("of that, for the stack", report.room_for_stack),
+        ("reserved for the stack", report.room_for_stack),
     ] {
         let share = 100.0 * f64::from(bytes) / f64::from(report.ram);
         text.push_str(&format!("| {what} | {bytes} | {share:.1} |\n"));

@@ -24,40 +24,39 @@ macro_rules! case {
 
 fn cases() -> Vec<Case> {
     vec![
-        case!(Amplitude, "50.001 mA asked for", 1, |_, r, _| r.stimuli[1] = Some(stimulus(50_001))),
-        case!(Width, "501 µs asked for", 1, |_, r, _| r.stimuli[1] =
+        case!(Amplitude, "50.001 mA requested", 1, |_, r, _| r.stimuli[1] = Some(stimulus(50_001))),
+        case!(Width, "501 µs requested", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { width_us: 501, ..stimulus(1000) })),
-        case!(Frequency, "100.1 pps asked for", 1, |_, r, _| r.stimuli[1] =
+        case!(Frequency, "100.1 pps requested", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { frequency_tenths_pps: 1001, ..stimulus(1000) })),
-        case!(Charge, "50 mA for 401 µs asked for", 1, |_, r, _| r.stimuli[1] =
+        case!(Charge, "50 mA for 401 µs requested", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { width_us: 401, frequency_tenths_pps: 10, ..stimulus(50_000) })),
-        case!(RootMeanSquare, "11.2 mA r.m.s. asked for", 1, |_, r, _| r.stimuli[1] =
+        case!(RootMeanSquare, "11.2 mA r.m.s. requested", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus {
                 width_us: 250,
                 frequency_tenths_pps: 1000,
                 recovery: 1,
                 ..stimulus(50_000)
             })),
-        case!(Session, "5 s of stimulation, 1 s of which had gone", 4_000, |_, _, _| ()),
-        case!(Silence, "the host is not heard of", 101, |o, _, _| o.host_heard = false),
+        case!(Session, "the last 4 s of a session of 5 s", 4_000, |_, _, _| ()),
+        case!(Silence, "the host is silent", 101, |o, _, _| o.host_heard = false),
         case!(ElectrodeShort, "99 Ω at channel 1", 1, |o, _, _| o.impedance_ohm[1] = Some(99)),
         case!(ElectrodeOpen, "5,001 Ω at channel 0", 1, |o, _, _| o.impedance_ohm[0] = Some(5001)),
         case!(Supply, "2.999 V of supply", 1, |o, _, _| o.supply_mv = 2999),
-        case!(SensorMissing, "no number for the path", 1, |o, _, _| o.path_um = None),
-        case!(SensorRange, "49.999 mm of path, reached slowly", 111, |o, _, t| o.path_um =
+        case!(SensorMissing, "no reading of the path", 1, |o, _, _| o.path_um = None),
+        case!(SensorRange, "the path slowly reaches 49.999 mm", 111, |o, _, t| o.path_um =
             Some((160_000 - 1000 * t as i32).max(49_999))),
         case!(SensorJump, "the path jumps by 1.01 mm each tick", 1, |o, _, t| o.path_um =
             Some(160_000 + if t.is_multiple_of(2) { 1010 } else { 0 })),
         case!(SensorStuck, "the path stays at 160.001 mm", 2_002, |o, _, _| o.path_um =
             Some(160_001)),
-        case!(Deadline, "a tick that was late", 1, |o, _, _| o.in_time = false),
+        case!(Deadline, "a late tick", 1, |o, _, _| o.in_time = false),
         case!(Watchdog, "a restart by the watchdog", 1, |_, _, _| ()),
-        case!(Checksum, "one bit of the state", 1, |o, _, _| o.memory_is_intact = false),
+        case!(Checksum, "a flipped bit in the state", 1, |o, _, _| o.memory_is_intact = false),
         case!(Output, "the output stage does not answer", 1, |o, _, _| o.output_answers = false),
-        case!(Request, "19 µs of width, which the stimulator cannot do", 1, |_, r, _| r.stimuli
-            [1] =
+        case!(Request, "19 µs of width, below the shortest phase", 1, |_, r, _| r.stimuli[1] =
             Some(Stimulus { width_us: 19, ..stimulus(1000) })),
-        case!(Request, "a row whose activation is infinite", 1, |_, r, _| r.is_finite = false),
+        case!(Request, "a row with infinite activation", 1, |_, r, _| r.is_finite = false),
         case!(Stopped, "stopped by the host", 1, |_, _, _| ()),
         case!(StaleRow, "rows stop coming", 52, |_, r, t| r.row_age_us = u64::from(1000 * t)),
         case!(StaleDrive, "the host does not repeat its drive", 1_002, |_, r, t| r.drive_age_us =
