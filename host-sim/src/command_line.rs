@@ -7,21 +7,21 @@ mod hil;
 mod measured;
 mod muscles;
 mod plot;
+mod run;
 mod stack;
 mod sweep;
+mod verify;
 
-use crate::engine::{self, Arithmetic};
+use crate::engine::Arithmetic;
 use crate::figures;
 use crate::golden;
-use crate::link;
-use crate::muscles::find;
+use crate::output_file::unless_broken;
 use crate::readme;
-use crate::reference::{Mode, Muscle};
+use crate::reference::Mode;
 use crate::report;
-use crate::trace::{self, InputTrace, OutputRow};
-use crate::verify::{self, Report};
+use crate::trace;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{Table, presets};
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,10 +38,9 @@ struct CommandLine {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a muscle over a file of inputs.
-    Run(RunArgs),
-    /// Compare every arithmetic with the reference, and the reference with the authors' vectors
-    /// (what `vm` does without a command).
-    Verify(VerifyArgs),
+    Run(run::RunArgs),
+    /// Compare every arithmetic with the reference, and the reference with the authors' traces (the default command).
+    Verify(verify::VerifyArgs),
     /// Draw a run as SVG.
     Plot(plot::PlotArgs),
     /// Compare the bits of every scenario's state with the golden ones.
@@ -71,30 +70,10 @@ enum Command {
     Readme(ReadmeArgs),
 }
 
-#[derive(Debug, Args)]
-struct RunArgs {
-    /// The muscle, in TOML, or its name in `vm muscles`.
-    #[arg(long)]
-    muscle: PathBuf,
-    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick.
-    #[arg(long)]
-    input: PathBuf,
-    /// Where the outputs go, in CSV.
-    #[arg(long)]
-    output: PathBuf,
-    /// How the muscle is recruited.
-    #[arg(long, value_enum)]
-    mode: ModeName,
-    /// What it is computed in.
-    #[arg(long, value_enum)]
-    arithmetic: Arithmetic,
-}
-
-#[derive(Debug, Default, Args)]
-struct VerifyArgs {
-    /// Print the rows as a JSON array instead of a table.
-    #[arg(long)]
-    json: bool,
+impl Default for Command {
+    fn default() -> Self {
+        Self::Verify(verify::VerifyArgs::default())
+    }
 }
 
 #[derive(Debug, Args)]
@@ -110,7 +89,7 @@ struct GoldenArgs {
 #[derive(Debug, Args)]
 struct FiguresArgs {
     /// The folder that they go to; made if it is not there.
-    #[arg(long)]
+    #[arg(long, default_value = "figures")]
     out: PathBuf,
     /// What the muscle is computed in.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
@@ -120,7 +99,7 @@ struct FiguresArgs {
 #[derive(Debug, Args)]
 struct ReportArgs {
     /// Where the page goes, in HTML.
-    #[arg(long)]
+    #[arg(long, default_value = "report.html")]
     out: PathBuf,
     /// What `vm cycles --json` printed, if cycles were measured.
     #[arg(long, value_name = "FILE")]
@@ -134,7 +113,7 @@ struct ReadmeArgs {
     write: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ModeName {
     /// Natural continuous recruitment.
     Continuous,
@@ -163,10 +142,10 @@ const REFUSED: u8 = 2;
 /// Runs the command line: 0 if all is well, 1 if `verify` found a failure, 2 if the input was
 /// refused.
 pub fn main() -> ExitCode {
-    let command = CommandLine::parse().command.unwrap_or(Command::Verify(VerifyArgs::default()));
+    let command = CommandLine::parse().command.unwrap_or_default();
     let done = match command {
-        Command::Run(args) => run(&args).map(|()| true),
-        Command::Verify(args) => verify_all(&args),
+        Command::Run(args) => run::run(&args).map(|()| true),
+        Command::Verify(args) => verify::run(&args),
         Command::Plot(args) => plot::run(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
@@ -196,111 +175,24 @@ fn complain(message: &str) {
     let _nobody_listens = writeln!(std::io::stderr(), "vm: {message}");
 }
 
-/// Prints on standard output; an error, not a panic, if that is closed or full.
+/// Prints on standard output: an error if that is full, and nothing if its reader has gone.
 fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
-    writeln!(std::io::stdout(), "{text}")
+    unless_broken(writeln!(std::io::stdout(), "{text}"))
 }
 
-fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
-    let muscle = find(&args.muscle)?.muscle;
-    let trace = trace::read_inputs(&args.input)?;
-    check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
-    let rows: Vec<OutputRow> = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?
-        .into_iter()
-        .enumerate()
-        .map(|(row, (sample, status))| OutputRow {
-            time: trace.time(row),
-            sample,
-            // The reference clips activation, takes the rest as it comes, and reports nothing.
-            status: match args.arithmetic {
-                Arithmetic::Reference => "unchecked".to_owned(),
-                _ => engine::status_names(status),
-            },
-        })
-        .collect();
-    trace::write_outputs(&args.output, &rows)?;
-    Ok(())
-}
-
-/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle can rest.
-fn check_run(
-    output: &Path,
-    input: &Path,
-    muscle_file: &Path,
-    muscle: &Muscle,
-    trace: &InputTrace,
+/// Refuses a file whose name ends as another format's do; a name without an ending is taken.
+fn check_ending(
+    option: &str,
+    path: &Path,
+    format: &str,
+    endings: &[&str],
 ) -> Result<(), Box<dyn Error>> {
-    for (read, file) in [("--input", input), ("--muscle", muscle_file)] {
-        if trace::same_file(output, file) {
-            let output = output.display();
-            return Err(format!("--output {output}: must be another file than {read}'s").into());
-        }
+    let Some(ending) = path.extension() else { return Ok(()) };
+    if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
+        return Ok(());
     }
-    let (shortest, longest) = link::path_domain(muscle);
-    let first = trace.inputs[0].path_length;
-    if !(shortest..=longest).contains(&first) {
-        let problem = format!(
-            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with the \
-             fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps them at lengths \
-             that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
-        );
-        return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
-    }
-    Ok(())
-}
-
-fn verify_all(args: &VerifyArgs) -> Result<bool, Box<dyn Error>> {
-    let report = verify::verify()?;
-    if args.json {
-        print(&serde_json::to_string_pretty(&report.rows)?)?;
-    } else {
-        print(&table(&report))?;
-    }
-    for entry in &report.unused {
-        complain(&format!("no row uses the tolerance {entry}"));
-    }
-    for row in report.rows.iter().filter(|row| !row.pass) {
-        complain(&format!("{} {} {}: {}", row.scenario, row.mode, row.arithmetic, row.problem));
-    }
-    if report.passed() && !args.json {
-        print(&format!("{} rows, all within their tolerances", report.rows.len()))?;
-    }
-    Ok(report.passed())
-}
-
-fn table(report: &Report) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "scenario",
-        "mode",
-        "arithmetic",
-        "against",
-        "max % F0",
-        "rms % F0",
-        "bias % F0",
-        "tolerance",
-        "pass",
-    ]);
-    for row in &report.rows {
-        table.add_row([
-            row.scenario.clone(),
-            row.mode.clone(),
-            row.arithmetic.clone(),
-            row.against.clone(),
-            format!("{:.5}", row.max_pct_f0),
-            format!("{:.5}", row.rms_pct_f0),
-            format!("{:+.5}", row.bias_pct_f0),
-            format!("{:.5}", row.tolerance_pct_f0),
-            if row.pass { "yes" } else { "NO" }.to_owned(),
-        ]);
-    }
-    for column in 4..8 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
+    let (path, ending) = (path.display(), endings[0]);
+    Err(format!("{option} {path}: only {format} is written, under a name that ends in .{ending}").into())
 }
 
 fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
@@ -333,6 +225,7 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
 
 fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
     // Before all is measured, and not after.
+    check_ending("--out", &args.out, "HTML", &["html", "htm"])?;
     trace::check_folder(&args.out)?;
     if let Some(cycles) = &args.cycles
         && trace::same_file(&args.out, cycles)
@@ -351,7 +244,7 @@ fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
         complain(&format!("{file} is not what is measured: cargo vm readme --write"));
         all_current = false;
     };
-    for (place, table) in readme::tables(&verify::verify()?)? {
+    for (place, table) in readme::tables(&crate::verify::verify()?)? {
         if args.write {
             place.write(&table)?;
         } else if !place.is_current(&table)? {

@@ -16,6 +16,7 @@ pub mod metrics;
 pub mod muscle_file;
 pub mod muscles;
 pub mod output_file;
+mod progress;
 pub mod readme;
 pub mod reference;
 pub mod report;

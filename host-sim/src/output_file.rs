@@ -3,18 +3,26 @@
 use std::fs::{self, File, Metadata};
 use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 
+/// The name of standard input and output on the command line.
+pub const STANDARD: &str = "-";
 /// Most symbolic links to follow, as on Linux.
 const MOST_LINKS: usize = 40;
 
 /// Writes a temporary file in the same folder and renames it.
 ///
-/// Symbolic links are followed. An existing file keeps its permissions and, where allowed, its owner and
-/// group; a new one gets the umask's. A target that is no regular file, such as a pipe, is written directly.
+/// Symbolic links are followed. An existing file keeps its permissions and, where allowed, its
+/// owner and group; a new one gets the umask's. A target that is no regular file, such as a pipe,
+/// is written directly, and `-` is standard output.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    let Some(place) = followed(path)? else { return fs::write(path, bytes) };
+    if path == Path::new(STANDARD) {
+        let mut output = std::io::stdout().lock();
+        return unless_broken(output.write_all(bytes).and_then(|()| output.flush()));
+    }
+    let Some(place) = followed(path)? else { return unless_broken(fs::write(path, bytes)) };
     let there = match fs::metadata(&place) {
-        Ok(there) if !there.is_file() => return fs::write(&place, bytes),
+        Ok(there) if !there.is_file() => return unless_broken(fs::write(&place, bytes)),
         Ok(there) => Some(there),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(error),
@@ -38,6 +46,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     file.sync_all()?;
     beside.persist(&place).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// The result of writing to a pipe: that its reader has gone is no error.
+pub fn unless_broken(result: Result<()>) -> Result<()> {
+    result.or_else(|error| match error.kind() {
+        ErrorKind::BrokenPipe => Ok(()),
+        _ => Err(error),
+    })
+}
+
+/// A folder that is removed with all that is in it. An error names the folder that it was to be in, not its random name.
+pub fn temporary_folder() -> Result<TempDir> {
+    tempfile::tempdir().map_err(|error| {
+        let kind = error.kind();
+        Error::new(kind, format!("{}: {kind}", std::env::temp_dir().display()))
+    })
 }
 
 /// The folder that a file is in.

@@ -5,6 +5,7 @@ use crate::cycles;
 use crate::engine::{Arithmetic, RunError};
 use crate::figures::{self, Claim, FiguresError};
 use crate::golden::{self, Golden, GoldenError};
+use crate::output_file::temporary_folder;
 use crate::verify::{self, Row, Traces};
 use askama::Template;
 use std::path::{Path, PathBuf};
@@ -30,6 +31,9 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// No temporary folder could be made.
+    #[error("the figures' folder: {0}")]
+    Folder(std::io::Error),
     /// What was measured of cycles cannot be read.
     #[error("{}: not what cargo vm cycles --json prints: {source}", path.display())]
     Cycles {
@@ -95,8 +99,7 @@ const FIGURES: [(&str, &str); 6] = [
 pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
     let cycles = cycles.map_or_else(|| Ok(Vec::new()), read_cycles)?;
     let report = verify::verify()?;
-    let folder = tempfile::tempdir()
-        .map_err(|source| ReportError::File { path: std::env::temp_dir(), source })?;
+    let folder = temporary_folder().map_err(ReportError::Folder)?;
     let claims = figures::make(folder.path(), Arithmetic::F32)?;
     let figures = FIGURES
         .into_iter()

@@ -11,7 +11,7 @@ pub use space::{KEYS, Key, Space, SpaceError, Variation};
 
 use crate::engine::{self, Arithmetic};
 use crate::golden;
-use indicatif::ProgressBar;
+use crate::progress;
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::mpsc;
@@ -77,7 +77,7 @@ impl Sweep {
         let begin = |number| Self::begin(number, &self.space.case(number));
         let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
         let missing = ledger.missing();
-        let progress = ProgressBar::new(self.space.count() as u64);
+        let progress = progress::bar("computing cases", self.space.count());
         progress.set_position((self.space.count() - missing.len()) as u64);
         let (sender, receiver) = mpsc::channel::<Vec<String>>();
         std::thread::scope(|scope| {

@@ -1,7 +1,8 @@
 //! Input and output traces in CSV.
 
-use crate::output_file::{self, folder_of};
+use crate::output_file::{self, STANDARD, folder_of};
 use crate::reference::{Input, Sample};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Columns that an input file begins with.
@@ -80,10 +81,25 @@ const TIME_TOLERANCE: f64 = 1e-3;
 /// Largest number in a trace.
 const LARGEST: f64 = 1e12;
 
-/// Reads a file of inputs.
+/// Reads a file of inputs; `-` is standard input.
 pub fn read_inputs(path: &Path) -> Result<InputTrace, TraceError> {
-    let text = std::fs::read(path).map_err(|source| file_error(path, source))?;
-    parse_inputs(&text, path)
+    parse_inputs(&read(path)?, name(path))
+}
+
+/// The bytes of a file; `-` is standard input.
+pub fn read(path: &Path) -> Result<Vec<u8>, TraceError> {
+    let bytes = if path == Path::new(STANDARD) {
+        let mut bytes = Vec::new();
+        std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    bytes.map_err(|source| file_error(name(path), source))
+}
+
+/// What a file that is read is called in messages.
+pub fn name(path: &Path) -> &Path {
+    if path == Path::new(STANDARD) { Path::new("standard input") } else { path }
 }
 
 /// Parses inputs; `path` is for the messages.
@@ -208,7 +224,7 @@ fn digits(value: f64) -> String {
 }
 
 /// A time to the nanosecond, or to the precision of `f64`.
-fn time_digits(time: f64) -> String {
+pub fn time_digits(time: f64) -> String {
     let whole = time.abs().max(1.0).log10().floor() as usize + 1;
     let text = format!("{time:.*}", 15_usize.saturating_sub(whole).clamp(1, 9));
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -248,7 +264,8 @@ pub fn check_folder(path: &Path) -> Result<(), TraceError> {
 
 /// Writes a file atomically, see [`output_file::write`].
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), TraceError> {
-    output_file::write(path, bytes).map_err(|source| file_error(path, source))
+    let named = if path == Path::new(STANDARD) { Path::new("standard output") } else { path };
+    output_file::write(path, bytes).map_err(|source| file_error(named, source))
 }
 
 /// Whether two paths are the same file.

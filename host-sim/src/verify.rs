@@ -3,12 +3,13 @@
 
 use crate::engine::{self, Arithmetic, RunError};
 use crate::metrics::{ForceError, forces};
+use crate::progress;
 use crate::scenario::{self, Scenario};
 use crate::tolerance::{self, Tolerance};
-use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// The authors' program starts from an estimate of the resting length; its traces count from
 /// here on, s.
@@ -38,6 +39,9 @@ pub struct Row {
     pub arithmetic_pct_f0: Option<f64>,
     /// What the largest error may be, % of F0.
     pub tolerance_pct_f0: f64,
+    /// Time that the run took, s.
+    #[serde(skip)]
+    pub seconds: f64,
     /// Whether the row is as it should be.
     pub pass: bool,
     /// What is wrong with a row that is not.
@@ -57,6 +61,8 @@ pub struct Report {
     pub unused: Vec<String>,
     /// The forces that were compared, of the scenarios at 1 ms.
     pub traces: Vec<Traces>,
+    /// Time that all comparisons took, s.
+    pub seconds: f64,
 }
 
 /// The forces of a scenario, N, a value per row of its inputs.
@@ -87,7 +93,8 @@ impl Report {
 pub fn verify() -> Result<Report, RunError> {
     let scenarios = scenario::all();
     let table = tolerance::table();
-    let progress = ProgressBar::new(scenarios.len() as u64);
+    let started = Instant::now();
+    let progress = progress::bar("comparing scenarios", scenarios.len());
     let compared: Vec<(Vec<Row>, Traces)> = scenarios
         .par_iter()
         .map(|scenario| {
@@ -105,7 +112,7 @@ pub fn verify() -> Result<Report, RunError> {
         .filter(|key| !rows.iter().any(|row| key_of(row) == **key))
         .map(|key| key.join(","))
         .collect();
-    Ok(Report { rows, unused, traces })
+    Ok(Report { rows, unused, traces, seconds: started.elapsed().as_secs_f64() })
 }
 
 fn key_of(row: &Row) -> tolerance::Key {
@@ -118,12 +125,14 @@ fn compare(
     table: &BTreeMap<tolerance::Key, Tolerance>,
 ) -> Result<(Vec<Row>, Traces), RunError> {
     let run = |arithmetic| {
+        let started = Instant::now();
         let rows = engine::run(&scenario.muscle, scenario.mode, arithmetic, &scenario.trace)?;
+        let seconds = started.elapsed().as_secs_f64();
         let flags = rows.iter().fold(vm_nostd::Status::empty(), |all, row| all | row.1);
-        Ok::<_, RunError>((forces(rows.iter().map(|row| &row.0)), flags))
+        Ok::<_, RunError>((forces(rows.iter().map(|row| &row.0)), flags, seconds))
     };
     let f0 = scenario.muscle.f0();
-    let (reference, _) = run(Arithmetic::Reference)?;
+    let (reference, _, seconds) = run(Arithmetic::Reference)?;
     let judge = |arithmetic: Arithmetic, against: &str, error, flags| {
         let key = [
             scenario.name.clone(),
@@ -138,20 +147,22 @@ fn compare(
         let settled =
             (0..vector.len()).find(|&row| scenario.trace.time(row) > VECTOR_SETTLED).unwrap_or(0);
         let error = ForceError::between(&reference[settled..], &vector[settled..], f0);
-        rows.push(judge(Arithmetic::Reference, "vector", error, Default::default()));
+        let row = judge(Arithmetic::Reference, "vector", error, Default::default());
+        rows.push(Row { seconds, ..row });
     }
-    let (scheme, scheme_flags) = run(Arithmetic::F64)?;
+    let (scheme, scheme_flags, scheme_seconds) = run(Arithmetic::F64)?;
     let mut forces_of = Vec::new();
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
-        let (computed, flags) = run(arithmetic)?;
+        let (computed, flags, seconds) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
         let row = judge(arithmetic, "reference", error, (flags, scenario.flags));
         let arithmetic_pct_f0 = Some(ForceError::between(&computed, &scheme, f0).max);
-        rows.push(Row { arithmetic_pct_f0, ..row });
+        rows.push(Row { arithmetic_pct_f0, seconds, ..row });
         forces_of.push((arithmetic.name(), computed));
     }
     let error = ForceError::between(&scheme, &reference, f0);
-    rows.push(judge(Arithmetic::F64, "reference", error, (scheme_flags, scenario.flags)));
+    let row = judge(Arithmetic::F64, "reference", error, (scheme_flags, scenario.flags));
+    rows.push(Row { seconds: scheme_seconds, ..row });
     forces_of.push((Arithmetic::F64.name(), scheme));
     let traces = Traces {
         scenario: scenario.name.clone(),
@@ -217,6 +228,7 @@ fn judge(
         rms_pct_f0: error.rms,
         bias_pct_f0: error.bias,
         arithmetic_pct_f0: None,
+        seconds: 0.0,
         tolerance_pct_f0: entry.map_or(0.0, |entry| entry.max),
         pass: problems.is_empty(),
         problem: problems.join("; "),

@@ -7,6 +7,7 @@ use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// `vm cycles`: a table of all cases, or a closer look at one function.
 #[derive(Debug, Args)]
@@ -33,7 +34,7 @@ pub struct CyclesArgs {
     /// Break a function of another program for a Cortex-M down.
     #[arg(long, requires = "symbol", value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// The function.
+    /// The function: its name or the end of it behind `::`, its symbol with hash, or its address (0x08000150).
     #[arg(long, requires = "elf", value_name = "NAME")]
     symbol: Option<String>,
     /// Call the function directly instead of running the program: with integers, zeros:64 or
@@ -44,6 +45,10 @@ pub struct CyclesArgs {
     /// QEMU's name of the machine that the program is for.
     #[arg(long, requires = "elf", default_value = cycles::MACHINE)]
     machine: String,
+    /// Stop the program after so many seconds; the calls that returned until then are counted.
+    #[arg(long, requires = "elf", default_value_t = 60, value_name = "SECONDS",
+          value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    timeout: u32,
     /// List the addresses that cost most, so many of them.
     #[arg(long, num_args = 0..=1, default_missing_value = "40", value_name = "COUNT")]
     listing: Option<usize>,
@@ -63,11 +68,20 @@ pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     let profile = match (&args.case, &args.elf, &args.symbol) {
         (Some(case), ..) => cycles::of_case(case, args.tick, args.tracer)?,
         (None, Some(elf), Some(symbol)) => {
-            cycles::of_image(elf, symbol, args.entry.as_deref(), &args.machine, args.tracer)?
+            let timeout = Duration::from_secs(args.timeout.into());
+            let entry = args.entry.as_deref();
+            cycles::of_image(elf, symbol, entry, &args.machine, args.tracer, timeout)?
         }
         _ => return report(args),
     };
     print(&profile.title)?;
+    if profile.stopped {
+        complain(&format!(
+            "the program is still running after {} s (--timeout): {} calls until then are counted",
+            args.timeout,
+            profile.calls.len()
+        ));
+    }
     print(&calls(&profile))?;
     print(&parts("function", &profile.functions, &profile))?;
     print(&parts("file", &profile.files, &profile))?;

@@ -20,7 +20,7 @@ pub struct FitArgs {
     #[arg(long)]
     data: Option<PathBuf>,
     /// Where the fitted muscle goes, in TOML.
-    #[arg(long)]
+    #[arg(long, default_value = "fitted.toml")]
     out: PathBuf,
     /// Where a page of every trial and parameter goes, in HTML.
     #[arg(long)]
@@ -58,6 +58,9 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
                 return Err(format!("{option} {output}: must be another file than {read}'s").into());
             }
         }
+    }
+    if let Some(report) = &args.report {
+        super::check_ending("--report", report, "HTML", &["html", "htm"])?;
     }
     if args.report.as_ref() == Some(&args.out) {
         return Err("--report: must be another file than --out's".into());

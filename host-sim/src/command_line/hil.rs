@@ -1,13 +1,14 @@
 //! `vm hil`: a trace played to a muscle on a device, and its bits against the host's.
 
-use super::{ModeName, print};
+use super::print;
+use super::run::check_run;
 use crate::engine;
 use crate::hil::{self, Client, Emulated, HilError, Line, Played};
 use crate::muscles::find;
+use crate::progress;
 use crate::reference::{Mode, Muscle};
 use crate::trace::{self, InputTrace, OutputRow};
-use clap::Args;
-use indicatif::ProgressBar;
+use clap::{Args, ValueEnum};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -19,12 +20,12 @@ pub struct HilArgs {
     /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick of the device.
     #[arg(long)]
     input: PathBuf,
-    /// Where the device's outputs go, in CSV.
-    #[arg(long)]
+    /// Outputs of the device, in CSV.
+    #[arg(long, default_value = "hil.csv")]
     output: PathBuf,
-    /// How the muscle is recruited: continuous or fes.
-    #[arg(long, value_enum)]
-    mode: ModeName,
+    /// Recruitment mode.
+    #[arg(long, value_enum, default_value = "continuous")]
+    mode: DeviceMode,
     /// The serial port of a board; without one, the firmware is built and runs in QEMU.
     #[arg(long)]
     port: Option<String>,
@@ -33,11 +34,23 @@ pub struct HilArgs {
     baud: u32,
 }
 
+/// The modes that the firmware has.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum DeviceMode {
+    /// Natural continuous recruitment.
+    Continuous,
+    /// Intramuscular FES.
+    Fes,
+}
+
 pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
     let muscle = find(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
-    super::check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
-    let mode = args.mode.into();
+    check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
+    let mode = match args.mode {
+        DeviceMode::Continuous => Mode::Continuous,
+        DeviceMode::Fes => Mode::Fes,
+    };
     let played = match &args.port {
         Some(port) => play(hil::serial(port, args.baud)?, &muscle, mode, &trace),
         None => play(Emulated::start()?, &muscle, mode, &trace),
@@ -74,7 +87,7 @@ fn play<L: Line>(
     mode: Mode,
     trace: &InputTrace,
 ) -> Result<Played, HilError> {
-    let bar = ProgressBar::new(trace.inputs.len() as u64);
+    let bar = progress::bar("playing ticks", trace.inputs.len());
     let played = hil::play(&mut client, muscle, mode, trace, &mut |rows| {
         bar.set_position(rows as u64);
     });

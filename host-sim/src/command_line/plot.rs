@@ -8,19 +8,20 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct PlotArgs {
-    /// Outputs of a run.
-    #[arg(long)]
+    /// Outputs of `vm run`.
+    #[arg(long, default_value = "run.csv")]
     run: PathBuf,
-    /// Inputs of that run, to be drawn below.
+    /// Inputs of that run, drawn below its outputs.
     #[arg(long)]
     input: Option<PathBuf>,
-    /// Where the picture goes, in SVG.
-    #[arg(long)]
+    /// Picture, in SVG; `-` is standard output.
+    #[arg(long, default_value = "run.svg")]
     output: PathBuf,
 }
 
 pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
-    let bytes = std::fs::read(&args.run).map_err(|e| format!("{}: {e}", args.run.display()))?;
+    super::check_ending("--output", &args.output, "SVG", &["svg"])?;
+    let bytes = trace::read(&args.run)?;
     let columns = &trace::OUTPUT_COLUMNS[..4];
     let rows = trace::numbers(&bytes, &args.run, columns)?;
     if rows.len() < 2 {

@@ -2,7 +2,7 @@
 
 use super::{ModeName, print};
 use crate::engine::{Arithmetic, mode_name, status_names};
-use crate::sweep::{Space, Sweep, Variation};
+use crate::sweep::{KEYS, Space, Sweep, Variation};
 use crate::trace::write_atomically;
 use clap::{Args, ValueEnum};
 use comfy_table::{Table, presets};
@@ -11,17 +11,18 @@ use std::path::{Path, PathBuf};
 
 /// `vm sweep`: a grid of muscles and inputs, or a sample at random, every arithmetic against the reference.
 #[derive(Debug, Args)]
+#[command(after_help = keys())]
 pub struct SweepArgs {
     /// Where the rows go, in CSV. If there are some already, of the same sweep, it goes on with the others.
-    #[arg(long, required_unless_present = "case")]
-    output: Option<PathBuf>,
+    #[arg(long, default_value = "sweep.csv")]
+    output: PathBuf,
     /// So many cases drawn at random of every mode, instead of a grid.
     #[arg(long, value_name = "COUNT")]
     random: Option<usize>,
     /// What they are drawn with.
     #[arg(long, default_value_t = 1, requires = "random")]
     seed: u64,
-    /// What varies: key=value,value,... or, drawn at random, key=from:to.
+    /// What varies, by a key of those below: key=value,value,... or, drawn at random, key=from:to.
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
     /// How muscles are recruited.
@@ -39,6 +40,23 @@ pub struct SweepArgs {
     /// A folder for a case's muscle.toml and input.csv; made if it is not there.
     #[arg(long, requires = "case", value_name = "FOLDER")]
     replay: Option<PathBuf>,
+}
+
+/// The keys of `--vary`: limits, the value in a grid that does not vary it, and the range it is drawn from.
+fn keys() -> String {
+    let mut text = String::from("Keys of --vary (limits; in a grid; at random):\n");
+    for key in KEYS {
+        let ((least, most), (from, to)) = (key.limits, key.range);
+        text.push_str(&format!(
+            "  {:<22} {:<20} {:<5} {:<12} {}\n",
+            key.name,
+            format!("{least} to {most};"),
+            format!("{};", key.nominal),
+            format!("{from} to {to}"),
+            key.meaning,
+        ));
+    }
+    text
 }
 
 impl SweepArgs {
@@ -87,7 +105,7 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
     if let (Some(case), Some(folder)) = (args.case, &args.replay) {
         return replay(&sweep, case, folder);
     }
-    let Some(output) = &args.output else { return Ok(()) };
+    let output = &args.output;
     let ledger = sweep.run(output)?;
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
@@ -136,9 +154,10 @@ fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Err
     }
     for arithmetic in sweep.arithmetics.iter().chain([&Arithmetic::Reference]) {
         print(&format!(
-            "cargo vm run --muscle '{}' --input '{}' --output {name}.csv --mode {mode} --arithmetic {name}",
+            "cargo vm run --muscle '{}' --input '{}' --output '{}' --mode {mode} --arithmetic {name}",
             muscle.display(),
             input.display(),
+            folder.join(arithmetic.name()).with_extension("csv").display(),
             name = arithmetic.name(),
         ))?;
     }

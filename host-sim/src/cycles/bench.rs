@@ -4,6 +4,7 @@ use super::case::{Case, Run};
 use super::follow::{Count, FollowError, Followed, follow};
 use super::image::Image;
 use super::trace::{Program, Tracer};
+use crate::output_file::temporary_folder;
 use crate::target::{self, TargetError};
 
 /// Why a case could not be measured.
@@ -15,6 +16,9 @@ pub enum BenchError {
     /// The bench could not be followed.
     #[error(transparent)]
     Follow(#[from] FollowError),
+    /// It did not end.
+    #[error("the bench is still running after {0} s")]
+    Endless(u64),
     /// The inputs could not be written.
     #[error("the inputs of the bench: {0}")]
     Inputs(#[from] std::io::Error),
@@ -28,13 +32,17 @@ pub fn measure(
     tracer: Tracer,
     count: Count,
 ) -> Result<(Image, Vec<Followed>), BenchError> {
-    let folder = tempfile::tempdir()?;
+    let folder = temporary_folder()?;
     let inputs = folder.path().join("inputs.bin");
     std::fs::write(&inputs, encode(runs))?;
     let path = target::build(target::STM32F405, "bench", &[("VM_BENCH_INPUTS", &inputs)])?;
     let image = Image::read(&path).map_err(FollowError::from)?;
     let functions: Vec<&str> = cases.iter().map(|case| case.function).collect();
-    let followed = follow(&image, &Program::on_board(&path), tracer, &functions, count)?;
+    let program = Program::on_board(&path);
+    let followed = follow(&image, &program, tracer, &functions, count)?;
+    if followed.iter().any(|followed| followed.stopped) {
+        return Err(BenchError::Endless(program.timeout.as_secs()));
+    }
     Ok((image, followed))
 }
 

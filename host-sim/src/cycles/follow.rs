@@ -5,6 +5,7 @@ use super::image::{Image, ImageError};
 use super::instruction::Instruction;
 use super::trace::{Block, Program, TraceError, Tracer, execute};
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 /// Why nothing was measured.
 #[derive(Debug, thiserror::Error)]
@@ -22,8 +23,26 @@ pub enum FollowError {
     #[error("no instruction of a Cortex-M4F at {0:#010x}")]
     Decode(u32),
     /// A function was not called.
-    #[error("{0} was not called, or did not return")]
+    #[error("{0} was not called")]
     NotCalled(String),
+    /// A function was called and did not return.
+    #[error("{0} was called and did not return")]
+    NotReturned(String),
+    /// The program was stopped before a function had returned.
+    #[error(
+        "{} is still running after {seconds} s (--timeout), and {function} {}",
+        program.display(), if *called { "was called and has not returned" } else { "was not called" }
+    )]
+    Endless {
+        /// The program.
+        program: PathBuf,
+        /// How long it was let run, s.
+        seconds: u64,
+        /// The function.
+        function: String,
+        /// Whether a call is under way.
+        called: bool,
+    },
 }
 
 /// What was seen of a function.
@@ -35,6 +54,8 @@ pub struct Followed {
     pub stack_bytes: u32,
     /// Address and bytes of all functions that were executed.
     pub code: BTreeSet<(u32, u32)>,
+    /// Whether the program was stopped when its time was up.
+    pub stopped: bool,
     /// Every counted instruction: how often it was executed, and what it cost in all.
     pub executions: Vec<(Instruction, u64, Cost)>,
 }
@@ -123,19 +144,31 @@ pub fn follow(
         before: None,
     };
     let mut undecodable = None;
-    execute(program, tracer, |block| {
+    let executed = execute(program, tracer, |block| {
         if undecodable.is_none() {
             undecodable = follower.see(block).err();
         }
-    })?;
+    });
+    let stopped = match executed {
+        Ok(()) => None,
+        Err(TraceError::Endless { program, seconds }) => Some((program, seconds)),
+        Err(error) => return Err(error.into()),
+    };
     if let Some(address) = undecodable {
         return Err(FollowError::Decode(address));
     }
-    let Follower { mut decoded, estimators, calls, .. } = follower;
+    let Follower { mut decoded, estimators, calls, call, .. } = follower;
     let mut all = Vec::new();
-    for ((estimator, calls), name) in estimators.iter().zip(calls).zip(functions) {
+    for (index, ((estimator, calls), name)) in estimators.iter().zip(calls).zip(functions).enumerate()
+    {
         if calls.is_empty() {
-            return Err(FollowError::NotCalled((*name).to_owned()));
+            let called = call.as_ref().is_some_and(|call| call.function == index);
+            let function = (*name).to_owned();
+            return Err(match stopped {
+                Some((program, seconds)) => FollowError::Endless { program, seconds, function, called },
+                None if called => FollowError::NotReturned(function),
+                None => FollowError::NotCalled(function),
+            });
         }
         let code = estimator
             .blocks()
@@ -144,6 +177,7 @@ pub fn follow(
             .collect();
         all.push(Followed {
             calls,
+            stopped: stopped.is_some(),
             stack_bytes: estimator.stack_bytes(),
             code,
             executions: estimator.executions(&mut decoded).map_err(FollowError::Decode)?,

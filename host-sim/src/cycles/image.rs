@@ -31,19 +31,21 @@ pub enum ImageError {
         reason: String,
     },
     /// No function has the name, or several have.
-    #[error("{found} functions are named \"{name}\" in the image{}", list(candidates))]
+    #[error("{} functions are named \"{name}\" in the image{}", candidates.len(), list(candidates))]
     Function {
         /// The name.
         name: String,
-        /// How many there are.
-        found: usize,
-        /// The names that end alike.
-        candidates: Vec<String>,
+        /// The functions of that name.
+        candidates: Vec<Function>,
     },
 }
 
-fn list(candidates: &[String]) -> String {
-    if candidates.is_empty() { String::new() } else { format!(": {}", candidates.join(", ")) }
+/// Functions with what tells them apart: their addresses and symbols.
+fn list(candidates: &[Function]) -> String {
+    let Some(first) = candidates.first() else { return String::new() };
+    let each = |one: &Function| format!("\n  {:#010x} {} ({})", one.address, one.name, one.symbol);
+    let all: String = candidates.iter().map(each).collect();
+    format!("; choose one by its address ({:#010x}) or its symbol:{all}", first.address)
 }
 
 /// A function of the image.
@@ -51,6 +53,8 @@ fn list(candidates: &[String]) -> String {
 pub struct Function {
     /// Name, as in the source.
     pub name: String,
+    /// Name in the image: with the hash of a function of Rust.
+    pub symbol: String,
     /// First address.
     pub address: u32,
     /// Bytes, literals included.
@@ -112,11 +116,12 @@ impl Image {
                 section.is_some_and(|section| section.kind() == SectionKind::Text)
             })
             .filter_map(|symbol| {
-                let name = symbol.name().ok().filter(|name| !name.starts_with('$'))?;
-                let name = format!("{:#}", rustc_demangle::demangle(name));
+                let mangled = symbol.name().ok().filter(|name| !name.starts_with('$'))?;
+                let name = format!("{:#}", rustc_demangle::demangle(mangled));
                 // Bit 0 of a function's address says that its code is Thumb.
                 let address = symbol.address() as u32 & !1;
-                Some(Function { name, address, size: symbol.size() as u32 })
+                let (symbol, size) = (mangled.to_owned(), symbol.size() as u32);
+                Some(Function { name, symbol, address, size })
             })
             .collect();
         let mut code_begins: Vec<u32> = file
@@ -163,20 +168,23 @@ impl Image {
         self.sections.push((address, code));
     }
 
-    /// The one function whose name is `name` or ends with `::name`.
+    /// The one function whose name is `name` or ends with `::name`, whose symbol it is, or which begins at the
+    /// address that it gives in hexadecimal (0x...).
     pub fn function(&self, name: &str) -> Result<&Function, ImageError> {
         let ending = format!("::{name}");
-        let found: Vec<&Function> = self
-            .functions
-            .iter()
-            .filter(|function| function.name == name || function.name.ends_with(&ending))
-            .collect();
-        match found.as_slice() {
-            [one] => Ok(one),
+        let address = name.strip_prefix("0x").map(|digits| digits.replace('_', ""));
+        let address = address.and_then(|digits| u32::from_str_radix(&digits, 16).ok());
+        let chosen = |function: &&Function| match address {
+            Some(address) => function.address == address & !1,
+            None => function.name == name || function.name.ends_with(&ending),
+        };
+        let by_symbol = self.functions.iter().filter(|function| function.symbol == name);
+        let found: Vec<&Function> = self.functions.iter().filter(chosen).collect();
+        match (found.as_slice(), by_symbol.collect::<Vec<_>>().as_slice()) {
+            ([one], _) | (_, [one]) => Ok(one),
             _ => Err(ImageError::Function {
                 name: name.to_owned(),
-                found: found.len(),
-                candidates: found.iter().map(|function| function.name.clone()).collect(),
+                candidates: found.into_iter().cloned().collect(),
             }),
         }
     }
@@ -227,7 +235,8 @@ impl Image {
             .map(|(name, halfwords)| {
                 let at = address + code.len() as u32;
                 code.extend(halfwords.iter().flat_map(|halfword| halfword.to_le_bytes()));
-                Function { name: (*name).to_owned(), address: at, size: 2 * halfwords.len() as u32 }
+                let (name, size) = ((*name).to_owned(), 2 * halfwords.len() as u32);
+                Function { symbol: name.clone(), name, address: at, size }
             })
             .collect();
         let sections = vec![(address, code)];

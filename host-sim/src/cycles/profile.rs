@@ -10,9 +10,11 @@ use super::follow::{Count, FollowError, Followed, follow};
 use super::image::{Image, ImageError};
 use super::instruction::Instruction;
 use super::trace::{Program, Tracer};
+use crate::output_file::temporary_folder;
 use crate::reference::Input;
 use crate::target;
 use std::path::Path;
+use std::time::Duration;
 
 /// Why there is no profile.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +51,8 @@ pub enum ProfileError {
 pub struct Profile {
     /// What it is of.
     pub title: String,
+    /// Whether the program was stopped when its time was up.
+    pub stopped: bool,
     /// Cost of each call.
     pub calls: Vec<Cost>,
     /// Deepest stack, bytes.
@@ -69,6 +73,7 @@ impl Profile {
     fn new(title: String, image: &Image, followed: Followed) -> Result<Self, ImageError> {
         Ok(Self {
             title,
+            stopped: followed.stopped,
             functions: by_function(image, &followed.executions),
             files: by_file(image, &followed.executions)?,
             classes: by_class(&followed.executions),
@@ -127,19 +132,20 @@ fn locate(runs: &[Run], tick: usize) -> Option<(&Run, usize)> {
     None
 }
 
-/// All calls of a function of an image, as its own program makes them; or one call that we make,
-/// with `arguments`.
+/// All calls of a function of an image that return before `timeout`, as its own program makes them; or one call that
+/// we make, with `arguments`.
 pub fn of_image(
     path: &Path,
     function: &str,
     arguments: Option<&[Argument]>,
     machine: &str,
     tracer: Tracer,
+    timeout: Duration,
 ) -> Result<Profile, ProfileError> {
     let mut image = Image::read(path)?;
     let entry = image.function(function)?.clone();
-    let folder = tempfile::tempdir().map_err(BootError::Write)?;
-    let mut program = Program { image: path, machine, arguments: Vec::new() };
+    let folder = temporary_folder().map_err(BootError::Write)?;
+    let mut program = Program { image: path, machine, arguments: Vec::new(), timeout };
     if let Some(arguments) = arguments {
         program.arguments = boot::loader_arguments(path, entry.address, arguments, folder.path())?;
         let (address, code) = boot::code();
@@ -149,7 +155,8 @@ pub fn of_image(
     let Some(followed) = followed.into_iter().next() else {
         return Err(FollowError::NotCalled(function.to_owned()).into());
     };
-    let title = format!("{} of {} on {machine}", entry.name, path.display());
+    let (name, address) = (&entry.name, entry.address);
+    let title = format!("{name} at {address:#010x} of {} on {machine}", path.display());
     Ok(Profile::new(title, &image, followed)?)
 }
 

@@ -3,11 +3,15 @@
 //! A plugin sends them over a socket. A QEMU that was built without plugins still writes them to
 //! its log, as text and a hundred times slower.
 
+use crate::output_file::temporary_folder;
 use crate::target::{self, TargetError};
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -27,10 +31,12 @@ pub enum TraceError {
     #[error("the trace broke off: {0}")]
     Read(#[from] std::io::Error),
     /// The program went on for too long.
-    #[error("{} is still running after {} s", program.display(), PATIENCE.as_secs())]
+    #[error("{} is still running after {seconds} s (--timeout)", program.display())]
     Endless {
         /// Which program.
         program: PathBuf,
+        /// How long it was let run, s.
+        seconds: u64,
     },
     /// The program failed.
     #[error("{} ended with {status} after {blocks} blocks: {message}", program.display())]
@@ -67,12 +73,14 @@ pub struct Program<'a> {
     pub machine: &'a str,
     /// Further arguments.
     pub arguments: Vec<String>,
+    /// How long it may run.
+    pub timeout: Duration,
 }
 
 impl<'a> Program<'a> {
     /// An image made for the board of the firmware.
     pub fn on_board(image: &'a Path) -> Self {
-        Self { image, machine: target::STM32F405.machine, arguments: Vec::new() }
+        Self { image, machine: target::STM32F405.machine, arguments: Vec::new(), timeout: PATIENCE }
     }
 }
 
@@ -85,7 +93,7 @@ pub struct Block {
     pub last: u32,
 }
 
-/// How long a program may go on for.
+/// How long a program of ours may run.
 const PATIENCE: Duration = Duration::from_secs(1200);
 /// How long QEMU may take until it has loaded the plugin.
 const START: Duration = Duration::from_secs(60);
@@ -123,18 +131,47 @@ fn plugin() -> Result<PathBuf, TraceError> {
     Ok(folder.join("release").join(name))
 }
 
-/// A run of QEMU, killed when it is let go of before its end.
+/// A run of QEMU, killed when it is let go of before its end, or when its time is up.
 struct Run<'a> {
     program: &'a Program<'a>,
-    child: Child,
+    child: Arc<Mutex<Child>>,
+    watchdog: Watchdog,
     started: Instant,
     blocks: u64,
 }
 
+/// Kills a child when its time is up: a program that sleeps executes nothing by which it could be noticed.
+struct Watchdog {
+    expired: Arc<AtomicBool>,
+    /// Dropped with the watchdog, which ends the thread that waits.
+    _alive: mpsc::Sender<()>,
+}
+
+impl Watchdog {
+    fn watch(child: &Arc<Mutex<Child>>, timeout: Duration) -> Self {
+        let (alive, over) = mpsc::channel::<()>();
+        let expired = Arc::new(AtomicBool::new(false));
+        let (flag, child) = (Arc::clone(&expired), Arc::clone(child));
+        thread::spawn(move || {
+            if over.recv_timeout(timeout) == Err(RecvTimeoutError::Timeout) {
+                flag.store(true, Ordering::SeqCst);
+                let _already_gone = locked(&child).kill();
+            }
+        });
+        Self { expired, _alive: alive }
+    }
+}
+
+/// The child, whichever thread had it last.
+fn locked(child: &Mutex<Child>) -> MutexGuard<'_, Child> {
+    child.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Drop for Run<'_> {
     fn drop(&mut self) {
-        let _already_gone = self.child.kill();
-        let _already_waited_for = self.child.wait();
+        let mut child = locked(&self.child);
+        let _already_gone = child.kill();
+        let _already_waited_for = child.wait();
     }
 }
 
@@ -147,32 +184,38 @@ impl<'a> Run<'a> {
             .stderr(Stdio::piped())
             .spawn()
             .map_err(target::start_error(target::QEMU))?;
-        Ok(Self { program, child, started: Instant::now(), blocks: 0 })
+        let child = Arc::new(Mutex::new(child));
+        let watchdog = Watchdog::watch(&child, program.timeout);
+        Ok(Self { program, child, watchdog, started: Instant::now(), blocks: 0 })
     }
 
-    fn count(&mut self) -> Result<(), TraceError> {
-        self.blocks += 1;
-        // A look at the clock now and then is enough.
-        if self.blocks.is_multiple_of(1 << 20) && self.started.elapsed() > PATIENCE {
-            return Err(TraceError::Endless { program: self.program.image.to_owned() });
-        }
-        Ok(())
+    /// How it ended; none while it is running.
+    fn status(&self) -> std::io::Result<Option<ExitStatus>> {
+        locked(&self.child).try_wait()
     }
 
     /// Waits for the end, which must be a success.
-    fn end(mut self, message: impl FnOnce() -> String) -> Result<(), TraceError> {
-        let status = self.child.wait()?;
+    fn end(self, message: impl FnOnce() -> String) -> Result<(), TraceError> {
+        let status = loop {
+            match self.status()? {
+                Some(status) => break status,
+                None => thread::sleep(Duration::from_millis(1)),
+            }
+        };
+        let program = self.program.image.to_owned();
+        if self.watchdog.expired.load(Ordering::SeqCst) {
+            return Err(TraceError::Endless { program, seconds: self.program.timeout.as_secs() });
+        }
         if status.success() {
             return Ok(());
         }
-        let program = self.program.image.to_owned();
         Err(TraceError::Failed { program, status, blocks: self.blocks, message: message() })
     }
 }
 
 /// Reads what QEMU says while it runs, lest its pipe fill up.
-fn listen(child: &mut Child) -> JoinHandle<String> {
-    let pipe = child.stderr.take();
+fn listen(child: &Mutex<Child>) -> JoinHandle<String> {
+    let pipe = locked(child).stderr.take();
     thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut pipe) = pipe {
@@ -185,16 +228,16 @@ fn listen(child: &mut Child) -> JoinHandle<String> {
 
 fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), TraceError> {
     let plugin = plugin()?;
-    let folder = tempfile::tempdir()?;
+    let folder = temporary_folder()?;
     let socket = folder.path().join("trace");
     let listener = UnixListener::bind(&socket)?;
     listener.set_nonblocking(true)?;
     let argument = format!("{},socket={}", plugin.display(), socket.display());
     let mut run = Run::start(program, &["-plugin", &argument])?;
-    let said = listen(&mut run.child);
-    let Some(mut stream) = accept(&listener, &mut run)? else {
+    let said = listen(&run.child);
+    let Some(mut stream) = accept(&listener, &run)? else {
         // It may be running without us.
-        let _already_gone = run.child.kill();
+        let _already_gone = locked(&run.child).kill();
         return Err(TraceError::Refused(said.join().unwrap_or_default()));
     };
     let mut buffer = vec![0; 1 << 20];
@@ -210,7 +253,7 @@ fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), T
         for block in blocks {
             let address =
                 |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| block[at + byte]));
-            run.count()?;
+            run.blocks += 1;
             see(Block { first: address(0), last: address(4) });
         }
         buffer.copy_within(held - rest..held, 0);
@@ -220,7 +263,7 @@ fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), T
 }
 
 /// The plugin's connection; `None` if QEMU ends without one.
-fn accept(listener: &UnixListener, run: &mut Run<'_>) -> Result<Option<UnixStream>, TraceError> {
+fn accept(listener: &UnixListener, run: &Run<'_>) -> Result<Option<UnixStream>, TraceError> {
     loop {
         match listener.accept() {
             Ok((stream, _)) => {
@@ -231,7 +274,7 @@ fn accept(listener: &UnixListener, run: &mut Run<'_>) -> Result<Option<UnixStrea
                 return Err(error.into());
             }
             // A run so short that it is over is connected all the same.
-            Err(_) if run.child.try_wait()?.is_some() => match listener.accept() {
+            Err(_) if run.status()?.is_some() => match listener.accept() {
                 Ok((stream, _)) => return Ok(Some(stream)),
                 Err(_) => return Ok(None),
             },
@@ -262,12 +305,13 @@ fn log_arguments() -> Result<&'static [&'static str], TraceError> {
 fn by_log(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), TraceError> {
     let mut run = Run::start(program, log_arguments()?)?;
     let mut said = Vec::new();
-    if let Some(pipe) = run.child.stderr.take() {
+    let pipe = locked(&run.child).stderr.take();
+    if let Some(pipe) = pipe {
         for line in BufReader::new(pipe).lines() {
             let line = line?;
             match logged_address(&line) {
                 Some(address) => {
-                    run.count()?;
+                    run.blocks += 1;
                     see(Block { first: address, last: address });
                 }
                 None => said.push(line),

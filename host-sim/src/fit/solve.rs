@@ -2,7 +2,7 @@
 
 use super::FitError;
 use super::problem::Problem;
-use indicatif::ProgressBar;
+use crate::progress;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -64,7 +64,7 @@ impl Search {
     /// The best of what the starts led to, and how many came as near to it as makes no difference.
     pub fn best(&self, problem: &Problem) -> Result<(Solution, usize), FitError> {
         let starts = self.starts(problem);
-        let progress = ProgressBar::new(starts.len() as u64);
+        let progress = progress::bar("fitting from starts", starts.len());
         let solutions: Vec<Result<Solution, String>> = starts
             .into_par_iter()
             .map(|start| {

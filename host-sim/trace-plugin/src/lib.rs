@@ -10,6 +10,7 @@ use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::io::{BufWriter, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::Mutex;
+use std::time::Duration;
 
 /// The interface version that QEMU checks before it calls anything.
 #[unsafe(no_mangle)]
@@ -44,6 +45,9 @@ unsafe extern "C" {
     );
 }
 
+/// How long a block may wait in the buffer.
+const FLUSH: Duration = Duration::from_millis(100);
+
 /// Where addresses go.
 static OUTLET: Mutex<Option<BufWriter<UnixStream>>> = Mutex::new(None);
 
@@ -77,6 +81,18 @@ pub unsafe extern "C" fn qemu_plugin_install(
     if let Ok(mut outlet) = OUTLET.lock() {
         *outlet = Some(BufWriter::with_capacity(1 << 16, socket));
     }
+    // A program that sleeps fills no buffer, and one that is stopped ends without a last word.
+    std::thread::spawn(|| {
+        loop {
+            std::thread::sleep(FLUSH);
+            if let Ok(mut outlet) = OUTLET.lock()
+                && let Some(writer) = outlet.as_mut()
+                && writer.flush().is_err()
+            {
+                *outlet = None;
+            }
+        }
+    });
     // SAFETY: `id` is the one QEMU gave; the callbacks live as long as the library.
     unsafe {
         qemu_plugin_register_vcpu_tb_trans_cb(id, on_translation);

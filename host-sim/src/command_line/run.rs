@@ -1,0 +1,120 @@
+//! `vm run`: a muscle over a file of inputs.
+
+use super::ModeName;
+use crate::engine::{self, Arithmetic};
+use crate::link;
+use crate::muscles::find;
+use crate::reference::Muscle;
+use crate::trace::{self, InputTrace, OutputRow};
+use clap::{Args, ValueEnum};
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use vm_nostd::Status;
+
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Muscle, in TOML, or a name of `vm muscles`.
+    #[arg(long)]
+    muscle: PathBuf,
+    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick; `-` is standard input.
+    #[arg(long)]
+    input: PathBuf,
+    /// Outputs, in CSV; `-` is standard output.
+    #[arg(long, default_value = "run.csv")]
+    output: PathBuf,
+    /// Recruitment mode.
+    #[arg(long, value_enum, default_value = "continuous")]
+    mode: ModeName,
+    /// Arithmetic.
+    #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
+    arithmetic: Arithmetic,
+}
+
+/// Runs the muscle, writes its outputs, and says on standard error what happened.
+pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
+    let muscle = find(&args.muscle)?.muscle;
+    let trace = trace::read_inputs(&args.input)?;
+    check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
+    let computed = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?;
+    let rows: Vec<OutputRow> = computed
+        .iter()
+        .enumerate()
+        .map(|(row, &(sample, status))| OutputRow {
+            time: trace.time(row),
+            sample,
+            // The reference clips activation, takes the rest as it comes, and reports nothing.
+            status: match args.arithmetic {
+                Arithmetic::Reference => "unchecked".to_owned(),
+                _ => engine::status_names(status),
+            },
+        })
+        .collect();
+    trace::write_outputs(&args.output, &rows)?;
+    let text = summary(args, &trace, &computed);
+    // Whether anybody listens or not, the outputs are written.
+    let _nobody_listens = writeln!(std::io::stderr(), "{text}");
+    Ok(())
+}
+
+/// Peak force, range of length and flagged ticks.
+fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
+    let ticks = rows.len() - 1;
+    let mode = args.mode.to_possible_value().map_or(String::new(), |m| m.get_name().to_owned());
+    let force = |row: &usize| rows[*row].0.force;
+    let peak = (0..rows.len()).max_by(|a, b| force(a).total_cmp(&force(b))).unwrap_or(0);
+    let lengths = rows.iter().map(|row| row.0.fascicle_length);
+    let (least, most) =
+        lengths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), l| (a.min(l), b.max(l)));
+    let flagged: Vec<String> = Status::all()
+        .iter_names()
+        .filter_map(|(name, flag)| {
+            let count = rows.iter().filter(|row| row.1.intersects(flag)).count();
+            (count > 0).then(|| format!("{name} {count} of {ticks} ticks"))
+        })
+        .collect();
+    let flagged = match (args.arithmetic, flagged.is_empty()) {
+        (Arithmetic::Reference, _) => "the reference checks nothing".to_owned(),
+        (_, true) => "no tick flagged".to_owned(),
+        (_, false) => format!("flagged: {}", flagged.join(", ")),
+    };
+    let to = if args.output == Path::new(crate::output_file::STANDARD) {
+        String::new()
+    } else {
+        format!("; written to {}", args.output.display())
+    };
+    format!(
+        "{ticks} ticks, {mode}, {}: peak force {:.3} N at {} s; fascicle length {least:.4} to {most:.4} \
+         L_ce0; {flagged}{to}",
+        args.arithmetic.name(),
+        force(&peak),
+        trace::time_digits(trace.time(peak)),
+    )
+}
+
+/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle can rest.
+pub(super) fn check_run(
+    output: &Path,
+    input: &Path,
+    muscle_file: &Path,
+    muscle: &Muscle,
+    trace: &InputTrace,
+) -> Result<(), Box<dyn Error>> {
+    for (read, file) in [("--input", input), ("--muscle", muscle_file)] {
+        if trace::same_file(output, file) {
+            let output = output.display();
+            return Err(format!("--output {output}: must be another file than {read}'s").into());
+        }
+    }
+    let (shortest, longest) = link::path_domain(muscle);
+    let first = trace.inputs[0].path_length;
+    if !(shortest..=longest).contains(&first) {
+        let problem = format!(
+            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with the \
+             fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps them at lengths \
+             that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
+        );
+        return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
+    }
+    Ok(())
+}
