@@ -1,13 +1,34 @@
-//! Lines over a common axis, with units and a legend, as SVG.
+//! Lines over a common axis, with units, ticks and a legend, as SVG.
+//!
+//! Coordinates are in tenths of a pixel: rounded to pixels, a gentle slope would be a staircase.
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use std::fmt::Write;
 
 /// A point: along the horizontal axis, and the vertical one.
 pub type Point = (f64, f64);
 
-/// A line: what it is, and its points.
-pub type Line = (String, Vec<Point>);
+/// A line, or points that are marked.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// What it is; lines without a label are not in the legend.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<Point>,
+    /// Circles in the colour of the line of the same place among the lines, instead of a line.
+    pub marks: bool,
+}
+
+impl Line {
+    /// A line.
+    pub fn new(label: impl Into<String>, points: impl IntoIterator<Item = Point>) -> Self {
+        Self { label: label.into(), points: points.into_iter().collect(), marks: false }
+    }
+
+    /// Points that somebody else found, to be compared with a line.
+    pub fn marks(label: impl Into<String>, points: impl IntoIterator<Item = Point>) -> Self {
+        Self { marks: true, ..Self::new(label, points) }
+    }
+}
 
 /// One panel of a chart.
 #[derive(Clone, Debug)]
@@ -16,6 +37,20 @@ pub struct Panel {
     pub y: &'static str,
     /// What is in it; a single line needs no legend.
     pub lines: Vec<Line>,
+    /// An input: half as high.
+    pub input: bool,
+}
+
+impl Panel {
+    /// A panel of results.
+    pub fn new(y: &'static str, lines: Vec<Line>) -> Self {
+        Self { y, lines, input: false }
+    }
+
+    /// A panel of inputs.
+    pub fn input(y: &'static str, lines: Vec<Line>) -> Self {
+        Self { y, lines, input: true }
+    }
 }
 
 /// A chart: panels below each other over the same axis.
@@ -29,97 +64,246 @@ pub struct Chart<'a> {
     pub panels: Vec<Panel>,
 }
 
-/// Size of a panel, pixels: as narrow as lines of two seconds at 10 Hz can be told apart in, for phones.
-const PANEL: (u32, u32) = (720, 260);
-const TITLE_HEIGHT: u32 = 40;
-/// Room for the legend, as a share of the lines' height.
-const LEGEND: f64 = 0.35;
+/// Width of a chart: as narrow as lines of two seconds at 10 Hz can be told apart in, for phones.
+const WIDTH: f64 = 720.0;
+/// Left and right of the panels: labels of the vertical axis, and half of the last one of the
+/// horizontal axis.
+const LEFT: f64 = 82.0;
+const RIGHT: f64 = 30.0;
+/// Heights: of the title, of a panel, of an input's panel, between panels, of a row of the legend,
+/// below the last panel.
+const TITLE: f64 = 34.0;
+const PANEL: f64 = 200.0;
+const INPUT: f64 = 105.0;
+const GAP: f64 = 16.0;
+const LEGEND_ROW: f64 = 20.0;
+const X_AXIS: f64 = 50.0;
+/// A letter of the legend takes at most about so much, and the sample before it this much.
+const LETTER: f64 = 7.0;
+const SAMPLE: f64 = 36.0;
 /// Columns, of at least a pixel, that a line is thinned to: more of it cannot be seen.
 const COLUMNS: usize = 600;
 /// Colours that stay apart for most eyes (Okabe and Ito), darkest first.
-const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 0, 0),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 114, 178),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-];
+const COLOURS: [&str; 6] = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00"];
+/// What shows lines that coincide: through the gaps of one, the one below is seen.
+const DASHES: [&str; 6] = ["none", "8 5", "3 4", "12 4 3 4", "5 3", "2 5"];
 
 impl Chart<'_> {
     /// The chart as SVG.
-    pub fn draw(&self) -> Result<String, String> {
-        let mut svg = String::new();
-        self.draw_into(&mut svg).map_err(|error| error.to_string())?;
-        Ok(svg)
-    }
-
-    fn draw_into(&self, svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
-        let size = (PANEL.0, PANEL.1 * self.panels.len() as u32 + TITLE_HEIGHT);
-        let root = SVGBackend::with_string(svg, size).into_drawing_area();
-        root.fill(&WHITE)?;
-        let root = root.titled(self.title, ("sans-serif", 18))?;
-        for (area, panel) in root.split_evenly((self.panels.len(), 1)).iter().zip(&self.panels) {
-            self.draw_panel(area, panel)?;
+    pub fn draw(&self) -> String {
+        let horizontal = Axis::exact(self.points().map(|point| point.0), LEFT, WIDTH - RIGHT);
+        let mut body = text(WIDTH / 2.0, 23.0, 18, "middle", "title", self.title);
+        let mut top = TITLE;
+        for (index, panel) in self.panels.iter().enumerate() {
+            top = legend(&mut body, panel, top);
+            let bottom = top + if panel.input { INPUT } else { PANEL };
+            let last = index + 1 == self.panels.len();
+            draw_panel(&mut body, panel, &horizontal, top, bottom, last);
+            top = bottom + GAP;
         }
-        root.present()?;
-        Ok(())
+        let height = top - GAP + X_AXIS;
+        body.push_str(&text(WIDTH - RIGHT, height - 10.0, 14, "end", "axis", self.x));
+        format!(
+            "<svg width=\"{WIDTH}\" height=\"{height}\" viewBox=\"0 0 {WIDTH} {height}\" \
+             xmlns=\"http://www.w3.org/2000/svg\" font-family=\"sans-serif\">\n\
+             <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"white\"/>\n{body}</svg>\n"
+        )
     }
 
-    fn draw_panel(
-        &self,
-        area: &DrawingArea<SVGBackend<'_>, Shift>,
-        panel: &Panel,
-    ) -> Result<(), Box<dyn std::error::Error>> {
-        let legend = panel.lines.len() > 1;
-        let points = || panel.lines.iter().flat_map(|(_, points)| points);
-        let range = |values: &mut dyn Iterator<Item = f64>, below: f64, above: f64| {
-            let (least, most) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-            // A constant still needs some height to be drawn in.
-            let height = (most - least).max(1e-6 * most.abs()).max(1e-9);
-            (least - below * height)..(most + above * height)
-        };
-        // Above the lines there is room for the legend.
-        let (x, y) = (
-            range(&mut points().map(|point| point.0), 0.0, 0.0),
-            range(&mut points().map(|point| point.1), 0.05, if legend { LEGEND } else { 0.05 }),
-        );
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(40)
-            .y_label_area_size(80)
-            .build_cartesian_2d(x, y)?;
-        chart
-            .configure_mesh()
-            .x_desc(self.x)
-            .y_desc(panel.y)
-            .axis_desc_style(("sans-serif", 14))
-            .label_style(("sans-serif", 13))
-            .x_labels(8)
-            .y_labels(6)
-            .light_line_style(WHITE)
-            .draw()?;
-        for ((label, points), colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
-            let drawn =
-                chart.draw_series(LineSeries::new(thinned(points), colour.stroke_width(2)))?;
-            if legend {
-                drawn.label(label).legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(2))
-                });
+    fn points(&self) -> impl Iterator<Item = Point> {
+        let lines = self.panels.iter().flat_map(|panel| &panel.lines);
+        lines.flat_map(|line| line.points.iter().copied())
+    }
+}
+
+/// An axis: what it goes from and to, and where that is drawn.
+struct Axis {
+    least: f64,
+    most: f64,
+    start: f64,
+    end: f64,
+}
+
+impl Axis {
+    /// From the least to the greatest of some values.
+    fn exact(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
+        let finite = values.filter(|value| value.is_finite());
+        let (least, most) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        if least > most {
+            return Self { least: 0.0, most: 1.0, start, end };
+        }
+        // A constant still needs some height to be drawn in.
+        let height = (most - least).max(1e-6 * most.abs()).max(1e-9);
+        Self { least, most: least + height, start, end }
+    }
+
+    /// The same with a twentieth of it free at both ends.
+    fn padded(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
+        let Self { least, most, .. } = Self::exact(values, start, end);
+        let free = 0.05 * (most - least);
+        Self { least: least - free, most: most + free, start, end }
+    }
+
+    fn place(&self, value: f64) -> f64 {
+        self.start + (value - self.least) / (self.most - self.least) * (self.end - self.start)
+    }
+
+    /// About `count` round values, and how many digits behind the point they need.
+    fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
+        let raw = (self.most - self.least) / count;
+        let power = 10_f64.powf(raw.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|part| part * power);
+        let step = step.into_iter().find(|step| *step >= raw * 0.999).unwrap_or(raw);
+        let digits = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
+        // A value that only rounding puts beyond an end is at that end.
+        let first = (self.least / step - 1e-6).ceil() as i64;
+        let last = (self.most / step + 1e-6).floor() as i64;
+        ((first..=last).map(|index| index as f64 * step).collect(), digits)
+    }
+}
+
+fn draw_panel(
+    body: &mut String,
+    panel: &Panel,
+    horizontal: &Axis,
+    top: f64,
+    bottom: f64,
+    last: bool,
+) {
+    let values = panel.lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+    let vertical = Axis::padded(values, bottom, top);
+    let (ticks, digits) = vertical.ticks(if panel.input { 3.0 } else { 6.0 });
+    for tick in ticks {
+        let y = vertical.place(tick);
+        rule(body, "grid", (LEFT, y), (WIDTH - RIGHT, y));
+        body.push_str(&text(LEFT - 6.0, y + 4.0, 13, "end", "tick-y", &format!("{tick:.digits$}")));
+    }
+    let (ticks, digits) = horizontal.ticks(8.0);
+    for tick in ticks {
+        let x = horizontal.place(tick);
+        rule(body, "grid", (x, top), (x, bottom));
+        if last {
+            let label = format!("{tick:.digits$}");
+            body.push_str(&text(x, bottom + 17.0, 13, "middle", "tick-x", &label));
+        }
+    }
+    let (width, height) = (WIDTH - RIGHT - LEFT, bottom - top);
+    let _string = writeln!(
+        body,
+        "<rect class=\"frame\" x=\"{LEFT}\" y=\"{top}\" width=\"{width}\" \
+         height=\"{height}\" fill=\"none\" \
+         stroke=\"#555\"/>"
+    );
+    let middle = (top + bottom) / 2.0;
+    let _string = writeln!(
+        body,
+        "<text class=\"axis\" transform=\"translate(18 {middle}) rotate(-90)\" font-size=\"{}\" \
+         text-anchor=\"middle\">{}</text>",
+        if panel.input { 12 } else { 14 },
+        escaped(panel.y)
+    );
+    for (line, style) in styled(panel) {
+        if line.marks {
+            for &(x, y) in line.points.iter().filter(|point| point.1.is_finite()) {
+                let (x, y) = (horizontal.place(x), vertical.place(y));
+                mark(body, style, x, y);
             }
+        } else {
+            let place = |(x, y): Point| (horizontal.place(x), vertical.place(y));
+            polyline(body, style, thinned(&line.points).into_iter().map(place));
         }
-        if legend {
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::UpperLeft)
-                .label_font(("sans-serif", 13))
-                .background_style(WHITE.mix(0.8))
-                .border_style(BLACK.mix(0.4))
-                .draw()?;
-        }
-        Ok(())
     }
+}
+
+/// The lines of a panel with the number of their colour: marks have that of the line they are
+/// compared with.
+fn styled(panel: &Panel) -> impl Iterator<Item = (&Line, usize)> {
+    let mut next = [0, 0];
+    panel.lines.iter().map(move |line| {
+        let counter = &mut next[usize::from(line.marks)];
+        *counter += 1;
+        (line, (*counter - 1) % COLOURS.len())
+    })
+}
+
+/// A line; where it is not a finite number, it has a gap.
+fn polyline(body: &mut String, style: usize, points: impl Iterator<Item = Point>) {
+    let mut text = String::new();
+    let (colour, dash) = (COLOURS[style], DASHES[style]);
+    let mut end = |text: &mut String| {
+        if !text.is_empty() {
+            let _string = writeln!(
+                body,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\" \
+                 stroke-dasharray=\"{dash}\" stroke-linejoin=\"round\"/>",
+                text.trim_end(),
+                if style == 0 { 2.4 } else { 1.8 },
+            );
+            text.clear();
+        }
+    };
+    for (x, y) in points {
+        if y.is_finite() {
+            let _string = write!(text, "{x:.1},{y:.1} ");
+        } else {
+            end(&mut text);
+        }
+    }
+    end(&mut text);
+}
+
+fn mark(body: &mut String, style: usize, x: f64, y: f64) {
+    let colour = COLOURS[style];
+    let _string = writeln!(
+        body,
+        "<circle class=\"mark\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"white\" \
+         stroke=\"{colour}\" \
+         stroke-width=\"1.5\"/>"
+    );
+}
+
+fn rule(body: &mut String, class: &str, from: Point, to: Point) {
+    let _string = writeln!(
+        body,
+        "<line class=\"{class}\" x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" \
+         stroke=\"#ddd\"/>",
+        from.0, from.1, to.0, to.1
+    );
+}
+
+/// The legend of a panel, above it: nothing lies on the data. Returns where the panel begins.
+fn legend(body: &mut String, panel: &Panel, top: f64) -> f64 {
+    if panel.lines.len() < 2 {
+        return top;
+    }
+    let (mut x, mut y) = (LEFT, top + 0.5 * LEGEND_ROW);
+    for (line, style) in styled(panel).filter(|(line, _)| !line.label.is_empty()) {
+        let width = SAMPLE + LETTER * line.label.chars().count() as f64 + 12.0;
+        if x + width > WIDTH - 4.0 && x > LEFT {
+            (x, y) = (LEFT, y + LEGEND_ROW);
+        }
+        if line.marks {
+            mark(body, style, x + 14.0, y);
+        } else {
+            polyline(body, style, [(x, y), (x + 28.0, y)].into_iter());
+        }
+        body.push_str(&text(x + SAMPLE, y + 4.0, 13, "start", "legend", &line.label));
+        x += width;
+    }
+    y + 0.5 * LEGEND_ROW + 2.0
+}
+
+fn text(x: f64, y: f64, size: u32, anchor: &str, class: &str, text: &str) -> String {
+    format!(
+        "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" \
+         text-anchor=\"{anchor}\">{}</text>\n",
+        escaped(text)
+    )
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// A line with no more points than can be seen: of each column the least and the greatest, in their order.
@@ -153,5 +337,30 @@ mod tests {
         assert!(thin.contains(&(4321.0, 5.0)) && thin.contains(&(7654.0, -3.0)));
         assert!(thin.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         assert_eq!(thinned(&points[..100]), points[..100]);
+    }
+
+    #[test]
+    fn ticks_are_round_and_reach_both_ends() {
+        let axis = |least, most| Axis { least, most, start: 0.0, end: 1.0 };
+        assert_eq!(
+            axis(0.0, 1.0).ticks(5.0),
+            (vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0], 1)
+        );
+        assert_eq!(axis(-3.0, 48.0).ticks(5.0).0, [0.0, 20.0, 40.0]);
+        assert_eq!(axis(0.0, 0.3).ticks(8.0).0.last(), Some(&0.30000000000000004));
+        let (ticks, digits) = axis(1e-5, 9e-5).ticks(5.0);
+        assert_eq!((ticks.len(), digits), (4, 5));
+    }
+
+    #[test]
+    fn labels_are_escaped_and_what_is_not_finite_is_a_gap() {
+        let points = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0)];
+        let panels = vec![Panel::new(
+            "force (N)",
+            vec![Line::new("a < b & c", points), Line::new("d", points)],
+        )];
+        let svg = Chart { title: "<title>", x: "time (s)", panels }.draw();
+        assert!(svg.contains("a &lt; b &amp; c") && svg.contains("&lt;title&gt;"), "{svg}");
+        assert!(!svg.contains("NaN"), "{svg}");
     }
 }

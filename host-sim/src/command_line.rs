@@ -27,7 +27,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Virtual Muscle on the host: run a muscle, verify the arithmetics, plot a run.
+/// Virtual Muscle on the host: run a muscle, verify every arithmetic, reproduce the paper's
+/// figures.
 #[derive(Debug, Parser)]
 #[command(name = "vm", version)]
 struct CommandLine {
@@ -39,32 +40,34 @@ struct CommandLine {
 enum Command {
     /// Run a muscle over a file of inputs.
     Run(run::RunArgs),
-    /// Compare every arithmetic with the reference, and the reference with the authors' traces (the default command).
+    /// Compare every arithmetic with the reference, and the reference with the authors' traces (the
+    /// default command).
     Verify(verify::VerifyArgs),
-    /// Draw a run as SVG.
+    /// Plot a run as SVG.
     Plot(plot::PlotArgs),
     /// Compare the bits of every scenario's state with the golden ones.
     Golden(GoldenArgs),
-    /// Count what a tick costs on a Cortex-M4F, from the instructions that execute in QEMU.
+    /// Estimate cycles per tick on a Cortex-M4F from the instructions that QEMU executes.
     Cycles(cycles::CyclesArgs),
     /// Compute the deepest stack of the stimulator's tasks, interrupts and boot from its image, and what of its memory
     /// is left.
     Stack(stack::StackArgs),
     /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the host's.
     Hil(hil::HilArgs),
-    /// Let six muscles move a planar arm of two joints, at constant activations.
+    /// Simulate a planar two-joint arm with six muscles at constant activations.
     Arm(arm::ArmArgs),
-    /// Make the paper's figures 3 to 7 again, with their numbers and what became of its claims.
+    /// Reproduce figures 3 to 7 of the paper as SVG and CSV, and check its claims.
     Figures(FiguresArgs),
-    /// All that is measured as one HTML file, for a browser without a network.
+    /// Write every measurement to one HTML page that needs no network.
     Report(ReportArgs),
-    /// Compare every arithmetic with the reference over a grid of muscles and inputs, or a sample.
+    /// Compare every arithmetic with the reference over a grid or a random sample of muscles and
+    /// inputs.
     Sweep(sweep::SweepArgs),
-    /// Fit a muscle to recordings, and say what they can and cannot tell of it.
+    /// Fit muscle parameters to recordings, with standard errors and correlations.
     Fit(fit::FitArgs),
-    /// Hold the model against real muscle: sets of recordings from a folder.
+    /// Compare the model with published recordings of real muscle.
     Measured(measured::MeasuredArgs),
-    /// List the human muscles that `--muscle` knows by name, and what is assumed of them.
+    /// List the human muscles that `--muscle` takes by name, with their assumptions.
     Muscles,
     /// Compare the READMEs' measured tables with what is measured.
     Readme(ReadmeArgs),
@@ -78,7 +81,7 @@ impl Default for Command {
 
 #[derive(Debug, Args)]
 struct GoldenArgs {
-    /// Take the bits of what is built as golden.
+    /// Replace the golden bits by those of this build.
     #[arg(long, requires = "reason")]
     bless: bool,
     /// Why the bits had to change.
@@ -88,20 +91,20 @@ struct GoldenArgs {
 
 #[derive(Debug, Args)]
 struct FiguresArgs {
-    /// The folder that they go to; made if it is not there.
+    /// Output folder; created if missing.
     #[arg(long, default_value = "figures")]
     out: PathBuf,
-    /// What the muscle is computed in.
+    /// Arithmetic.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
     arithmetic: Arithmetic,
 }
 
 #[derive(Debug, Args)]
 struct ReportArgs {
-    /// Where the page goes, in HTML.
+    /// Output page, in HTML.
     #[arg(long, default_value = "report.html")]
     out: PathBuf,
-    /// What `vm cycles --json` printed, if cycles were measured.
+    /// Output of `vm cycles --json`, if cycles were measured.
     #[arg(long, value_name = "FILE")]
     cycles: Option<PathBuf>,
 }
@@ -192,7 +195,8 @@ fn check_ending(
         return Ok(());
     }
     let (path, ending) = (path.display(), endings[0]);
-    Err(format!("{option} {path}: only {format} is written, under a name that ends in .{ending}").into())
+    Err(format!("{option} {path}: only {format} is written, under a name that ends in .{ending}")
+        .into())
 }
 
 fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
@@ -214,10 +218,11 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
     let claims = figures::make(&args.out, args.arithmetic)?;
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["claim", "claimed", "measured", "agrees", "why not"]);
+    table.set_header(["figure", "claim", "claimed", "held to", "measured", "agrees", "why not"]);
     for claim in &claims {
         let (agrees, why) = if claim.agrees { ("yes", "") } else { ("no", claim.why) };
-        table.add_row([claim.claim, claim.claimed, &claim.measured, agrees, why]);
+        let (figure, limit, measured) = (claim.figure, &claim.limit, &claim.measured);
+        table.add_row([figure, claim.claim, claim.claimed, limit, measured, agrees, why]);
     }
     print(&table)?;
     Ok(())

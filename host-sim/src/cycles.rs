@@ -19,6 +19,7 @@ mod report;
 mod source;
 mod timing;
 mod trace;
+mod unit_costs;
 
 pub use boot::{Argument, ArgumentError, BootError};
 pub use breakdown::{Part, by_class, by_function, hottest};
@@ -31,5 +32,6 @@ pub(crate) use instruction::Class;
 pub use instruction::Instruction;
 pub use profile::{MACHINE, Profile, ProfileError, of_case, of_image};
 pub use reach::{Reached, reachable};
-pub use report::{CLOCKS, ReportError, Row, Share, Spread, report};
+pub use report::{CLOCKS, ReportError, Row, Share, Spread, is_listed, report, state_bytes};
 pub use trace::Tracer;
+pub use unit_costs::UnitCost;

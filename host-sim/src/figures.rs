@@ -5,7 +5,7 @@
 
 mod arm;
 mod claims;
-mod computation_time;
+mod computation;
 mod sinusoids;
 mod static_force;
 
@@ -44,9 +44,6 @@ pub enum FiguresError {
     /// A table could not be put together.
     #[error(transparent)]
     Table(#[from] csv::Error),
-    /// A figure could not be drawn.
-    #[error("a figure could not be drawn: {0}")]
-    Draw(String),
 }
 
 /// A way of recruiting the paper's muscle.
@@ -72,33 +69,60 @@ fn cases() -> [Case; 3] {
 const PATH: f64 = 0.16;
 const TIME_STEP: f64 = 1e-3;
 
-/// Where figures go.
-struct Folder<'a>(&'a Path);
+/// The figures and their tables, by the name of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    files: Vec<(&'static str, Vec<u8>)>,
+    /// What the paper claims, and what is found.
+    pub claims: Vec<Claim>,
+}
 
-impl Folder<'_> {
-    fn table<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<(), FiguresError> {
+impl Figures {
+    /// Computes all figures.
+    pub fn draw(arithmetic: Arithmetic) -> Result<Self, FiguresError> {
+        let mut figures = Self::default();
+        let arms = arm::make(&mut figures, arithmetic)?;
+        let step = static_force::make(&mut figures, arithmetic)?;
+        let dynamics = sinusoids::make(&mut figures, arithmetic)?;
+        let costs = computation::make(&mut figures)?;
+        figures.claims = claims::judge(&arms, step, &dynamics, &costs);
+        let claims = figures.claims.clone();
+        figures.table("claims.csv", &claims)?;
+        Ok(figures)
+    }
+
+    /// Writes all files into a folder, which is made if it is not there.
+    pub fn write(&self, folder: &Path) -> Result<(), FiguresError> {
+        std::fs::create_dir_all(folder)
+            .map_err(|source| FiguresError::Folder { path: folder.to_owned(), source })?;
+        for (name, bytes) in &self.files {
+            write_atomically(&folder.join(name), bytes)?;
+        }
+        Ok(())
+    }
+
+    /// The text of a file.
+    pub fn file(&self, name: &str) -> Option<&str> {
+        let (_, bytes) = self.files.iter().find(|(file, _)| *file == name)?;
+        std::str::from_utf8(bytes).ok()
+    }
+
+    fn table<T: Serialize>(&mut self, name: &'static str, rows: &[T]) -> Result<(), FiguresError> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         rows.iter().try_for_each(|row| writer.serialize(row))?;
         let text = writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
-        Ok(write_atomically(&self.0.join(name), &text)?)
+        self.files.push((name, text));
+        Ok(())
     }
 
-    fn figure(&self, name: &str, chart: &Chart<'_>) -> Result<(), FiguresError> {
-        let svg = chart.draw().map_err(FiguresError::Draw)?;
-        Ok(write_atomically(&self.0.join(name), svg.as_bytes())?)
+    fn figure(&mut self, name: &'static str, chart: &Chart<'_>) {
+        self.files.push((name, chart.draw().into_bytes()));
     }
 }
 
 /// Makes all figures in a folder, and returns what became of the paper's claims.
 pub fn make(folder: &Path, arithmetic: Arithmetic) -> Result<Vec<Claim>, FiguresError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|source| FiguresError::Folder { path: folder.to_owned(), source })?;
-    let folder = Folder(folder);
-    let arms = arm::make(&folder, arithmetic)?;
-    let curve = static_force::make(&folder, arithmetic)?;
-    let dynamics = sinusoids::make(&folder, arithmetic)?;
-    let times = computation_time::make(&folder)?;
-    let claims = claims::judge(&arms, &curve, &dynamics, &times);
-    folder.table("claims.csv", &claims)?;
-    Ok(claims)
+    let figures = Figures::draw(arithmetic)?;
+    figures.write(folder)?;
+    Ok(figures.claims)
 }

@@ -17,6 +17,7 @@ pub mod muscle_file;
 pub mod muscles;
 pub mod output_file;
 mod progress;
+mod provenance;
 pub mod readme;
 pub mod reference;
 pub mod report;

@@ -56,7 +56,8 @@ pub fn unless_broken(result: Result<()>) -> Result<()> {
     })
 }
 
-/// A folder that is removed with all that is in it. An error names the folder that it was to be in, not its random name.
+/// A folder that is removed with all that is in it. An error names the folder that it was to be in,
+/// not its random name.
 pub fn temporary_folder() -> Result<TempDir> {
     tempfile::tempdir().map_err(|error| {
         let kind = error.kind();

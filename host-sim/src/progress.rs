@@ -1,4 +1,5 @@
-//! Progress of what takes long: a label, a bar and the time left, on standard error where that is a terminal.
+//! Progress of what takes long: a label, a bar and the time left, on standard error where that is a
+//! terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 

@@ -81,9 +81,6 @@ pub enum ReadmeError {
     /// The model refused the picture's muscle.
     #[error(transparent)]
     Run(#[from] crate::engine::RunError),
-    /// The picture could not be drawn.
-    #[error("{PICTURE}: {0}")]
-    Draw(String),
 }
 
 /// All that is generated from a report of accuracy: each table, with its place.

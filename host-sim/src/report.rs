@@ -1,15 +1,16 @@
 //! All that is measured, in one HTML file that needs no network.
 
-use crate::chart::{Chart, Panel, Point};
+use crate::chart::{Chart, Line, Panel, Point};
 use crate::cycles;
 use crate::engine::{Arithmetic, RunError};
-use crate::figures::{self, Claim, FiguresError};
+use crate::figures::{Claim, Figures, FiguresError};
 use crate::golden::{self, Golden, GoldenError};
-use crate::output_file::temporary_folder;
+use crate::provenance::Provenance;
+use crate::scenario;
+use crate::tolerance;
 use crate::verify::{self, Row, Traces};
 use askama::Template;
 use std::path::{Path, PathBuf};
-use vm_nostd::{Fixed, NaturalContinuous, Scalar, State};
 
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
@@ -31,9 +32,9 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// No temporary folder could be made.
-    #[error("the figures' folder: {0}")]
-    Folder(std::io::Error),
+    /// The budgets could not be read.
+    #[error("data/budgets.toml: {0}")]
+    Budgets(#[from] toml::de::Error),
     /// What was measured of cycles cannot be read.
     #[error("{}: not what cargo vm cycles --json prints: {source}", path.display())]
     Cycles {
@@ -42,9 +43,6 @@ pub enum ReportError {
         /// Where, and why.
         source: serde_json::Error,
     },
-    /// A plot could not be drawn.
-    #[error("a plot could not be drawn: {0}")]
-    Draw(String),
     /// The page could not be put together.
     #[error(transparent)]
     Page(#[from] askama::Error),
@@ -53,7 +51,8 @@ pub enum ReportError {
 /// A number to begin with.
 struct Fact {
     value: String,
-    what: &'static str,
+    what: String,
+    /// Whether it is within its limit.
     good: bool,
 }
 
@@ -73,7 +72,7 @@ struct Plot {
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
-    version: &'static str,
+    provenance: Provenance,
     facts: Vec<Fact>,
     accuracy: Vec<Accuracy<'a>>,
     rows: &'a [Row],
@@ -92,31 +91,29 @@ const FIGURES: [(&str, &str); 6] = [
     ("static_force_start.svg", "Figure 4: where recruitment starts"),
     ("sinusoid_responses.svg", "Figure 5: responses to sinusoids"),
     ("sinusoids.svg", "Figures 5 and 6: sinusoids of all frequencies"),
-    ("computation_time.svg", "Figure 7: computation time"),
+    ("computation.svg", "Figure 7: what motor units cost"),
 ];
 
 /// Measures all there is, and puts it in one page; `cycles` is what `vm cycles --json` printed.
 pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
     let cycles = cycles.map_or_else(|| Ok(Vec::new()), read_cycles)?;
     let report = verify::verify()?;
-    let folder = temporary_folder().map_err(ReportError::Folder)?;
-    let claims = figures::make(folder.path(), Arithmetic::F32)?;
+    let drawn = Figures::draw(Arithmetic::F32)?;
     let figures = FIGURES
         .into_iter()
-        .map(|(name, title)| {
-            let path = folder.path().join(name);
-            let svg = std::fs::read_to_string(&path)
-                .map_err(|source| ReportError::File { path, source })?;
-            Ok(Plot { title: title.to_owned(), svg })
+        .map(|(name, title)| Plot {
+            title: title.to_owned(),
+            svg: drawn.file(name).unwrap_or_default().to_owned(),
         })
-        .collect::<Result<_, ReportError>>()?;
+        .collect();
+    let claims = drawn.claims;
     let differences = golden::differences()?;
     let page = Page {
-        version: env!("CARGO_PKG_VERSION"),
-        facts: facts(&report.rows, &claims, &differences, &cycles),
+        provenance: Provenance::now(),
+        facts: facts(&report.rows, &claims, &differences, &cycles)?,
         accuracy: accuracy(&report.rows, &report.traces),
         rows: &report.rows,
-        errors: report.traces.iter().map(plot).collect::<Result<_, _>>()?,
+        errors: report.traces.iter().map(plot).collect(),
         figures,
         claims,
         cycles,
@@ -133,68 +130,76 @@ fn read_cycles(path: &Path) -> Result<Vec<cycles::Row>, ReportError> {
         .map_err(|source| ReportError::Cycles { path: path.to_owned(), source })
 }
 
+/// The scenario with the largest error at 1 kHz.
+fn worst<'a>(rows: &'a [Row], arithmetic: &str, ringing: bool) -> Option<&'a Row> {
+    let of_interest = rows.iter().filter(|row| {
+        (row.arithmetic == arithmetic && !row.scenario.contains('@'))
+            && (ringing || !tolerance::rings(&row.scenario))
+    });
+    of_interest.max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0))
+}
+
+/// The largest error in an arithmetic, against what is promised of such scenarios.
+fn error_fact(row: &Row, what: &str, f0: f64) -> Fact {
+    let key = [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone);
+    let (promised, _) = tolerance::promise(&key, f0);
+    Fact {
+        value: format!("{:.3} %", row.max_pct_f0),
+        what: format!(
+            "of F0 (limit {promised} %): largest error in {} at 1 kHz, {what}: {}, {}",
+            row.arithmetic, row.scenario, row.mode
+        ),
+        good: row.max_pct_f0 <= promised,
+    }
+}
+
 fn facts(
     rows: &[Row],
     claims: &[Claim],
     differences: &[String],
     cycles: &[cycles::Row],
-) -> Vec<Fact> {
+) -> Result<Vec<Fact>, ReportError> {
     let passed = rows.iter().filter(|row| row.pass).count();
     let agreed = claims.iter().filter(|claim| claim.agrees).count();
-    // At 1 ms, and where no slack tendon snaps.
-    let largest = |arithmetic: &str| {
-        let of_interest = rows.iter().filter(|row| {
-            (row.arithmetic == arithmetic && !row.scenario.contains('@'))
-                && !["passive_length_3hz", "velocity_kinks"].contains(&row.scenario.as_str())
-        });
-        of_interest.map(|row| row.max_pct_f0).fold(0.0, f64::max)
-    };
-    let mut facts = vec![
-        Fact {
-            value: format!("{passed} of {}", rows.len()),
-            what: "comparisons within their tolerances",
-            good: passed == rows.len(),
-        },
-        Fact {
-            value: format!("{:.3} %", largest("f32")),
-            what: "of F0: largest error in f32 at 1 kHz, where no slack tendon snaps",
-            good: largest("f32") <= 0.1,
-        },
-        Fact {
-            value: format!("{:.3} %", largest("fixed")),
-            what: "of F0: the same in fixed point",
-            good: largest("fixed") <= 0.1,
-        },
-        Fact {
-            value: if differences.is_empty() { "same" } else { "changed" }.to_owned(),
-            what: "bits as committed",
-            good: differences.is_empty(),
-        },
-        Fact {
-            value: format!("{agreed} of {}", claims.len()),
-            what: "claims of the paper found again",
-            good: true,
-        },
-    ];
+    let mut facts = vec![Fact {
+        value: format!("{passed} of {}", rows.len()),
+        what: "comparisons within their tolerances".to_owned(),
+        good: passed == rows.len(),
+    }];
+    let f0 = scenario::paper_muscle().f0();
+    for arithmetic in ["f32", "fixed"] {
+        for (ringing, what) in [(true, "all scenarios"), (false, "where the tendon does not ring")]
+        {
+            facts.extend(worst(rows, arithmetic, ringing).map(|row| error_fact(row, what, f0)));
+        }
+    }
     facts.push(Fact {
-        value: format!("{} and {} B", state_bytes::<f32>(), state_bytes::<Fixed>()),
-        what: "of state of a muscle of two types, in f32 and in fixed point",
-        good: true,
+        value: if differences.is_empty() { "same" } else { "changed" }.to_owned(),
+        what: "bits as committed".to_owned(),
+        good: differences.is_empty(),
     });
-    let named = |name| cycles.iter().find(|row: &&cycles::Row| row.case == name);
-    if let Some(row) = named("continuous-f32") {
+    facts.push(Fact {
+        value: format!("{agreed} of {}", claims.len()),
+        what: "claims of the paper found again".to_owned(),
+        good: agreed == claims.len(),
+    });
+    for case in ["continuous-f32", "continuous-fixed"] {
+        let Some((bytes, most)) = cycles::state_bytes(case)? else { continue };
+        facts.push(Fact {
+            value: format!("{bytes} B"),
+            what: format!("of state of a muscle of two types, {case} (budget {most} B)"),
+            good: bytes <= most,
+        });
+    }
+    for row in cycles.iter().filter(|row| row.case == "continuous-f32") {
+        let budget = row.budget.map_or(String::new(), |budget| format!(" (budget {budget})"));
         facts.push(Fact {
             value: row.cycles_pess_max.to_string(),
-            what: "cycles at most for a tick in f32 on a Cortex-M4F",
+            what: format!("cycles at most for a tick in f32 on a Cortex-M4F{budget}"),
             good: row.pass,
         });
     }
-    facts
-}
-
-/// Bytes of the state of a muscle of two types under natural continuous recruitment.
-fn state_bytes<S: Scalar<Bits = u32>>() -> usize {
-    size_of::<S::Bits>() * State::<S, NaturalContinuous, 2>::WORDS
+    Ok(facts)
 }
 
 /// A line per scenario at 1 ms.
@@ -226,27 +231,33 @@ fn accuracy<'a>(rows: &'a [Row], traces: &'a [Traces]) -> Vec<Accuracy<'a>> {
     traces.iter().map(line).collect()
 }
 
-/// Force and errors of a scenario over time.
-fn plot(traces: &Traces) -> Result<Plot, ReportError> {
-    let over_time = |values: &mut dyn Iterator<Item = f64>| -> Vec<Point> {
-        values.enumerate().map(|(row, value)| (row as f64 * traces.time_step, value)).collect()
+/// Inputs, force and errors of a scenario over time.
+fn plot(traces: &Traces) -> Plot {
+    let line = |name: &str, values: &mut dyn Iterator<Item = f64>| {
+        let over_time =
+            |(row, value): (usize, f64)| -> Point { (row as f64 * traces.time_step, value) };
+        Line::new(name, values.enumerate().map(over_time))
     };
     // The scheme's own error below, what rounding makes of it on top.
     let errors = traces.computed.iter().rev().map(|(name, forces)| {
         let pairs = forces.iter().zip(&traces.reference);
         let mut errors = pairs.map(|(force, reference)| 100.0 * (force - reference) / traces.f0);
-        ((*name).to_owned(), over_time(&mut errors))
+        line(name, &mut errors)
     });
-    let force = over_time(&mut traces.reference.iter().copied());
+    let mut inputs = [
+        ("U (1)", line("", &mut traces.inputs.iter().map(|input| input.activation))),
+        ("L_mt (cm)", line("", &mut traces.inputs.iter().map(|input| 100.0 * input.path_length))),
+    ]
+    .map(|(y, line)| Panel::input(y, vec![line]))
+    .to_vec();
+    if traces.mode == "fes" {
+        let mut frequencies = traces.inputs.iter().map(|input| input.stimulation_frequency);
+        inputs.push(Panel::input("stimulation (pps)", vec![line("", &mut frequencies)]));
+    }
+    let force = line("", &mut traces.reference.iter().copied());
+    inputs.push(Panel::new("force (N)", vec![force]));
+    inputs.push(Panel::new("error (% of F0)", errors.collect()));
     let title = format!("{}, {}", traces.scenario, traces.mode);
-    let chart = Chart {
-        title: &title,
-        x: "time (s)",
-        panels: vec![
-            Panel { y: "force (N)", lines: vec![("reference".to_owned(), force)] },
-            Panel { y: "error (% of F0)", lines: errors.collect() },
-        ],
-    };
-    let svg = chart.draw().map_err(ReportError::Draw)?;
-    Ok(Plot { title, svg })
+    let svg = Chart { title: &title, x: "time (s)", panels: inputs }.draw();
+    Plot { title, svg }
 }

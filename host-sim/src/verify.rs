@@ -4,6 +4,7 @@
 use crate::engine::{self, Arithmetic, RunError};
 use crate::metrics::{ForceError, forces};
 use crate::progress;
+use crate::reference::Input;
 use crate::scenario::{self, Scenario};
 use crate::tolerance::{self, Tolerance};
 use rayon::prelude::*;
@@ -76,6 +77,8 @@ pub struct Traces {
     pub time_step: f64,
     /// F0, N.
     pub f0: f64,
+    /// The inputs.
+    pub inputs: Vec<Input>,
     /// Of the reference.
     pub reference: Vec<f64>,
     /// Of every arithmetic, by its name.
@@ -169,6 +172,7 @@ fn compare(
         mode: engine::mode_name(scenario.mode).to_owned(),
         time_step: scenario.trace.time_step,
         f0,
+        inputs: scenario.trace.inputs.clone(),
         reference,
         computed: forces_of,
     };

@@ -1,6 +1,7 @@
 //! `vm cycles --elf`: functions of one name are told apart, and a program that never ends is stopped.
 //!
-//! The images are made here, of a few instructions. Where QEMU cannot be had, what needs it says SKIPPED.
+//! The images are made here, of a few instructions. Where QEMU cannot be had, what needs it says
+//! SKIPPED.
 
 use std::fs;
 use std::path::Path;
@@ -26,8 +27,8 @@ fn call(from: u32, to: u32) -> [u16; 2] {
     [0xF000, 0xF800 | (offset >> 1) as u16]
 }
 
-/// A program: reset calls the first `spin` twice, which takes two instructions; the other takes four, and `stuck`
-/// does not return. Then the program goes on as `end` says.
+/// A program: reset calls the first `spin` twice, which takes two instructions; the other takes
+/// four, and `stuck` does not return. Then the program goes on as `end` says.
 fn program(end: u16) -> Vec<u8> {
     let [first, second, stuck] = [CODE + 12, CODE + 16, CODE + 24];
     let mut code = Vec::new();
@@ -42,7 +43,8 @@ fn program(end: u16) -> Vec<u8> {
 
 /// An ELF file for a Cortex-M with one section of code, in flash.
 fn image(code: &[u16], functions: &[(&str, u32, u32)]) -> Vec<u8> {
-    let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let words =
+        |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
     let mut text = words(&[0x2002_0000, CODE | 1]);
     text.extend(code.iter().flat_map(|half| half.to_le_bytes()));
     let (mut names, mut symbols) = (vec![0], vec![0; 16]);
@@ -59,8 +61,12 @@ fn image(code: &[u16], functions: &[(&str, u32, u32)]) -> Vec<u8> {
         contents.resize(contents.len().next_multiple_of(4), 0);
         (offset, bytes.len() as u32)
     };
-    let [(text_at, text_size), (symbols_at, symbols_size), (names_at, names_size), (of_sections, its_size)] =
-        [&text[..], &symbols, &names, section_names].map(&mut place);
+    let [
+        (text_at, text_size),
+        (symbols_at, symbols_size),
+        (names_at, names_size),
+        (of_sections, its_size),
+    ] = [&text[..], &symbols, &names, section_names].map(&mut place);
     let headers_at = start + contents.len() as u32;
     let mut file = b"\x7fELF\x01\x01\x01\0\0\0\0\0\0\0\0\0".to_vec();
     // An executable for Arm, version 1, entered at reset; then where headers are, and how many.
@@ -88,8 +94,11 @@ fn cycles(image: &Path, arguments: &str) -> Output {
 
 /// Standard output and error; none where QEMU is missing, which is said.
 fn said(output: &Output) -> Option<(String, String)> {
-    let [out, error] = [&output.stdout, &output.stderr].map(|b| String::from_utf8_lossy(b).into_owned());
-    if error.contains("apt-get install qemu-system-arm") && std::env::var_os("VM_REQUIRE_TARGET").is_none() {
+    let [out, error] =
+        [&output.stdout, &output.stderr].map(|b| String::from_utf8_lossy(b).into_owned());
+    if error.contains("apt-get install qemu-system-arm")
+        && std::env::var_os("VM_REQUIRE_TARGET").is_none()
+    {
         eprintln!("SKIPPED: {error}");
         return None;
     }
@@ -132,7 +141,10 @@ fn a_program_that_never_ends_is_stopped_after_the_stated_limit() {
         let output = cycles(&path, &format!("--symbol {FIRST} --timeout 2"));
         let Some((text, message)) = said(&output) else { return };
         assert!(output.status.success(), "{message}");
-        assert!(message.contains("still running after 2 s (--timeout): 2 calls until then"), "{message}");
+        assert!(
+            message.contains("still running after 2 s (--timeout): 2 calls until then"),
+            "{message}"
+        );
         assert!(text.contains("2 calls of up to 2 instructions"), "{text}");
         // What was not called, or does not return, is said.
         let output = cycles(&path, &format!("--symbol {SECOND} --timeout 2"));

@@ -70,7 +70,31 @@ fn the_page_has_everything_in_it() {
     {
         assert!(page.contains(label), "{label}");
     }
-    assert!(page.matches("fixed\n").count() >= scenarios, "legends");
+    assert!(page.matches(">fixed</text>").count() >= scenarios, "legends");
+    // Each with its inputs.
+    for input in [">U (1)</text>", ">L_mt (cm)</text>"] {
+        assert!(page.matches(input).count() >= scenarios, "{input}");
+    }
+
+    // When, from what and on what it was made.
+    let commit = Command::new("git")
+        .args(["-C", env!("CARGO_MANIFEST_DIR"), "rev-parse", "--short=12", "HEAD"])
+        .output()
+        .ok()
+        .filter(|output| output.status.success());
+    let commit = commit.map_or("unknown".to_owned(), |output| {
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    });
+    for words in [
+        concat!("vm-nostd ", env!("CARGO_PKG_VERSION")),
+        &format!("commit {commit}"),
+        " UTC",
+        std::env::consts::ARCH,
+        " cores",
+    ] {
+        assert!(page.contains(words), "no \"{words}\"");
+    }
+    cards(&page);
 
     // The numbers are those of the other commands.
     let golden = include_str!("../data/golden.toml");
@@ -88,6 +112,39 @@ fn the_page_has_everything_in_it() {
     assert!(page.contains("with effective length the arm goes unstable"));
     assert!(page.contains("98765") && page.contains(r#"<span class="bad">NO</span>"#));
     assert!(page.contains("are the committed ones"));
+}
+
+/// What the page says first, and whether it says it as a fault.
+fn cards(page: &str) {
+    let list =
+        page.split("<ul class=\"facts\">").nth(1).and_then(|rest| rest.split("</ul>").next());
+    let cards: Vec<&str> =
+        list.expect("cards").lines().filter(|line| line.contains("<li>")).collect();
+    let card = |words: &str| {
+        let found = cards.iter().find(|card| card.contains(words));
+        *found.unwrap_or_else(|| panic!("no \"{words}\" in {cards:#?}"))
+    };
+    // The largest error is the largest of all scenarios, with its limit, name and mode.
+    let all = card("largest error in f32 at 1 kHz, all scenarios");
+    assert!(all.contains("velocity_kinks, fes") && all.contains("limit 1.5 %"), "{all}");
+    let others = card("largest error in f32 at 1 kHz, where the tendon does not ring");
+    assert!(others.contains("limit 0.1 %"), "{others}");
+    card("largest error in fixed at 1 kHz, all scenarios");
+    // A claim that does not hold is seen in its card.
+    let claims = card("claims of the paper found again");
+    let (found, all) =
+        claims.split(['>', '<']).find_map(|text| text.split_once(" of ")).expect("a count");
+    assert_eq!(claims.contains("bad"), found != all, "{claims}");
+    assert!(found != all && all == "10", "{claims}");
+    // Bytes of state are those of the table of cycles.
+    let budgets = include_str!("../data/budgets.toml");
+    for (case, bytes) in [("continuous-f32", 56), ("continuous-fixed", 96)] {
+        assert!(budgets.contains(&format!("[model.{case}]")));
+        let card = card(case);
+        assert!(card.contains(&format!(">{bytes} B<")) && card.contains("budget"), "{card}");
+    }
+    // Thresholds of "close to 1" are shown.
+    assert!(page.contains("<td>0.95 to 1.05</td>") && page.contains("<td>0.85 to 1.15</td>"));
 }
 
 #[test]

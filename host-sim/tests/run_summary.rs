@@ -36,9 +36,9 @@ fn a_run_says_peak_force_range_of_length_and_flagged_ticks_on_standard_error() {
     assert!(output.stdout.is_empty());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     let text = fs::read_to_string(folder.path().join("out.csv")).expect("an output");
-    let rows: Vec<Vec<&str>> =
-        text.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    let column = |index: usize| rows.iter().map(move |row| row[index].parse::<f64>().expect("a number"));
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let column =
+        |index: usize| rows.iter().map(move |row| row[index].parse::<f64>().expect("a number"));
     let peak = column(1).fold(f64::NEG_INFINITY, f64::max);
     let (least, most) = column(2).fold((f64::INFINITY, 0.0_f64), |(a, b), l| (a.min(l), b.max(l)));
     let time = rows.iter().find(|row| row[1].parse() == Ok(peak)).expect("a row")[0];
@@ -65,7 +65,8 @@ fn a_run_says_peak_force_range_of_length_and_flagged_ticks_on_standard_error() {
 fn a_run_needs_no_mode_no_arithmetic_and_no_output() {
     let folder = folder();
     done(folder.path(), "run --muscle m.toml --input in.csv");
-    let explicit = "run --muscle m.toml --input in.csv --mode continuous --arithmetic f32 --output b.csv";
+    let explicit =
+        "run --muscle m.toml --input in.csv --mode continuous --arithmetic f32 --output b.csv";
     done(folder.path(), explicit);
     let read = |name: &str| fs::read(folder.path().join(name)).expect(name);
     assert!(read("run.csv") == read("b.csv"));
@@ -155,7 +156,8 @@ fn a_picture_that_is_not_svg_and_a_page_that_is_not_html_are_refused_by_name() {
     assert!(!folder.path().join("run.png").exists());
 }
 
-/// Where no temporary file can be made, the folder that was to have it is named, and no random name.
+/// Where no temporary file can be made, the folder that was to have it is named, and no random
+/// name.
 #[cfg(unix)]
 #[test]
 fn names_of_temporary_files_are_in_no_error() {
@@ -165,10 +167,8 @@ fn names_of_temporary_files_are_in_no_error() {
         "cycles --elf m.toml --symbol main",
         "run --muscle m.toml --input in.csv --output nowhere/out.csv",
     ] {
-        let output = vm(folder.path(), arguments)
-            .env("TMPDIR", "/nowhere")
-            .output()
-            .expect("vm runs");
+        let output =
+            vm(folder.path(), arguments).env("TMPDIR", "/nowhere").output().expect("vm runs");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(!message.contains(".tmp"), "{arguments}: {message}");

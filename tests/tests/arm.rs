@@ -3,10 +3,12 @@
 
 use host_sim::arm::{self, Activations, Arm, Drive, Moment, Outcome};
 use host_sim::engine::Arithmetic;
-use host_sim::figures::{ARM_ACTIVATIONS, ARM_DURATION, ARM_START};
+use host_sim::figures::{ARM_ACTIVATIONS, ARM_START};
 use host_sim::reference::Mode;
 
 const TIME_STEP: f64 = 1e-3;
+/// In which every error of force has had its effect, and swings still grow, s.
+const DURATION: f64 = 5.0;
 
 fn drive(mode: Mode, arithmetic: Arithmetic) -> Drive {
     Drive {
@@ -16,7 +18,7 @@ fn drive(mode: Mode, arithmetic: Arithmetic) -> Drive {
         stimulation_frequency: 20.0,
         start: ARM_START.map(f64::to_radians),
         time_step: TIME_STEP,
-        duration: ARM_DURATION,
+        duration: DURATION,
     }
 }
 

@@ -12,8 +12,8 @@ use cortex_m_rt::entry;
 use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
 use vm_nostd::{
-    ActingLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits, Muscle,
-    NaturalContinuous, NaturalDiscrete, Output, ParameterError, Recruitment, Scalar, State,
+    ActingLength, EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits,
+    Muscle, NaturalContinuous, NaturalDiscrete, Output, ParameterError, Recruitment, Scalar, State,
     TimeStep, UnitSizes,
 };
 
@@ -40,6 +40,15 @@ step!(step_continuous_fixed, Fixed, NaturalContinuous);
 step!(step_fes_fixed, Fixed, IntramuscularFes);
 step!(step_discrete_2_f32, f32, NaturalDiscrete<FascicleLength, 2>);
 step!(step_discrete_60_f32, f32, NaturalDiscrete<FascicleLength, 60>);
+// For the paper's figure 7.
+step!(step_discrete_6_f32, f32, NaturalDiscrete<FascicleLength, 6>);
+step!(step_discrete_12_f32, f32, NaturalDiscrete<FascicleLength, 12>);
+step!(step_discrete_30_f32, f32, NaturalDiscrete<FascicleLength, 30>);
+step!(step_leff_2_f32, f32, NaturalDiscrete<EffectiveLength, 2>);
+step!(step_leff_6_f32, f32, NaturalDiscrete<EffectiveLength, 6>);
+step!(step_leff_12_f32, f32, NaturalDiscrete<EffectiveLength, 12>);
+step!(step_leff_30_f32, f32, NaturalDiscrete<EffectiveLength, 30>);
+step!(step_leff_60_f32, f32, NaturalDiscrete<EffectiveLength, 60>);
 
 /// A tick of the literal port, under a name of its own for each mode and precision.
 macro_rules! literal {
@@ -115,7 +124,15 @@ fn drive_all() -> Result<(), ParameterError> {
     literal(7, literal_fes_f64)?;
     drive(8, |_| Ok(()), |(), input| kernels_f32(input))?;
     model_of_units(9, 1, step_discrete_2_f32)?;
-    model_of_units(10, 30, step_discrete_60_f32)
+    model_of_units(10, 30, step_discrete_60_f32)?;
+    model_of_units(11, 3, step_discrete_6_f32)?;
+    model_of_units(12, 6, step_discrete_12_f32)?;
+    model_of_units(13, 15, step_discrete_30_f32)?;
+    model_of_units(14, 1, step_leff_2_f32)?;
+    model_of_units(15, 3, step_leff_6_f32)?;
+    model_of_units(16, 6, step_leff_12_f32)?;
+    model_of_units(17, 15, step_leff_30_f32)?;
+    model_of_units(18, 30, step_leff_60_f32)
 }
 
 /// What steps a muscle.

@@ -23,6 +23,8 @@ pub struct Outcome {
     pub final_angles: Joints,
     /// Early and late amplitudes; none if the run is too short.
     pub swings: Option<Swings>,
+    /// Period with which the elbow swings in the second half of the run, s; none where it does not.
+    pub period: Option<f64>,
     /// An angle left the range of its joint, where paths may be clipped.
     pub out_of_range: bool,
     /// Largest energy error over the run: kinetic energy minus work of the muscles, as a share of all work
@@ -86,6 +88,7 @@ impl Outcome {
                 .last()
                 .map_or([f64::NAN; 2], |moment| moment.angles.map(f64::to_degrees)),
             swings: swings(moments, time_step),
+            period: period(&moments[moments.len() / 2..], 1),
             out_of_range: !moments.iter().all(inside),
             energy_error: if turnover > 0.0 { imbalance / turnover } else { 0.0 },
             status: moments.iter().fold(Status::empty(), |all, moment| all | moment.status),
@@ -111,6 +114,34 @@ fn swings(moments: &[Moment], time_step: f64) -> Option<Swings> {
     Some(Swings { early: largest(early), late: largest(late), half })
 }
 
+/// The median time between the moments at which a joint goes up through the middle of its swing, s;
+/// none if there are not two of them, or the joint is at rest. The median, because now and then a
+/// swing is left out.
+fn period(moments: &[Moment], joint: usize) -> Option<f64> {
+    let angle = |moment: &Moment| moment.angles[joint].to_degrees();
+    let (least, most) = moments
+        .iter()
+        .map(angle)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), angle| (a.min(angle), b.max(angle)));
+    let (low, high) = (least + 0.25 * (most - least), least + 0.75 * (most - least));
+    // Counted once it was low again: small swings about the middle are no period.
+    let mut was_low = false;
+    let mut ups = Vec::new();
+    for moment in moments {
+        let angle = angle(moment);
+        if angle < low {
+            was_low = true;
+        } else if was_low && angle > high {
+            was_low = false;
+            ups.push(moment.time);
+        }
+    }
+    let swings = most - least > LEAST_SWING;
+    let mut intervals: Vec<f64> = ups.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    intervals.sort_by(f64::total_cmp);
+    swings.then(|| intervals.get(intervals.len() / 2).copied()).flatten()
+}
+
 /// Peak-to-peak angle, degrees; NaN if any angle is.
 fn swing(moments: &[Moment], joint: usize) -> f64 {
     let angles = || moments.iter().map(|moment| moment.angles[joint].to_degrees());
@@ -123,22 +154,47 @@ fn swing(moments: &[Moment], joint: usize) -> f64 {
 mod tests {
     use super::*;
 
+    fn moment(time: f64, elbow: impl Fn(f64) -> f64) -> Moment {
+        Moment {
+            time,
+            angles: [0.0, elbow(time).to_radians()],
+            velocities: [0.0; 2],
+            forces: Vec::new(),
+            kinetic_energy: 0.0,
+            work: 0.0,
+            turnover: 0.0,
+            status: Status::empty(),
+        }
+    }
+
     /// A run of 5 s: the shoulder rests, the elbow follows a function of time (degrees).
     fn judged(elbow: impl Fn(f64) -> f64) -> Swings {
-        let moments: Vec<Moment> = (0..=500)
-            .map(|tick| Moment {
-                time: f64::from(tick) * 0.01,
-                angles: [0.0, elbow(f64::from(tick) * 0.01).to_radians()],
-                velocities: [0.0; 2],
-                forces: Vec::new(),
-                kinetic_energy: 0.0,
-                work: 0.0,
-                turnover: 0.0,
-                status: Status::empty(),
-            })
-            .collect();
+        let moments: Vec<Moment> =
+            (0..=500).map(|tick| moment(f64::from(tick) * 0.01, &elbow)).collect();
         assert!(swings(&moments[..=290], 0.01).is_none(), "too short to be judged");
         swings(&moments, 0.01).expect("long enough")
+    }
+
+    #[test]
+    fn a_period_is_that_of_whole_swings() {
+        let run = |elbow: &dyn Fn(f64) -> f64| -> Option<f64> {
+            let moments: Vec<Moment> =
+                (0..=3000).map(|tick| moment(f64::from(tick) * 0.01, elbow)).collect();
+            period(&moments, 1)
+        };
+        let found = run(&|t| (t * std::f64::consts::TAU / 2.4).sin()).expect("a period");
+        assert!((found - 2.4).abs() < 0.01, "{found}");
+        // With a small faster swing on top, it is the same.
+        let found = run(&|t| (t * std::f64::consts::TAU / 2.4).sin() + 0.1 * (20.0 * t).sin());
+        assert!((found.expect("a period") - 2.4).abs() < 0.03, "{found:?}");
+        // One that is left out now and then is none of it.
+        let found = run(&|t| {
+            let resting = (12.0..14.4).contains(&t);
+            if resting { -1.0 } else { -(t * std::f64::consts::TAU / 2.4).cos() }
+        });
+        assert!((found.expect("a period") - 2.4).abs() < 0.01, "{found:?}");
+        assert_eq!(run(&|t| 1e-3 * t.sin()), None, "at rest");
+        assert_eq!(run(&|t| t), None, "on its way");
     }
 
     #[test]

@@ -13,10 +13,10 @@ use std::path::PathBuf;
 /// `vm arm`: the planar arm under constant activations.
 #[derive(Debug, Args)]
 pub struct ArmArgs {
-    /// How the muscles are recruited.
+    /// Recruitment mode.
     #[arg(long, value_enum, default_value = "continuous")]
     mode: ModeName,
-    /// What they are computed in.
+    /// Arithmetic.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
     arithmetic: Arithmetic,
     /// Activation of both shoulder muscles, 0 to 1.
@@ -31,17 +31,17 @@ pub struct ArmArgs {
     /// Stimulation frequency in mode fes, pps.
     #[arg(long, default_value_t = 20.0)]
     stimulation: f64,
-    /// Angles of shoulder and elbow to start from, degrees.
+    /// Initial angles of shoulder and elbow, degrees.
     #[arg(long, num_args = 2, value_names = ["SHOULDER", "ELBOW"],
           default_values_t = figures::ARM_START, allow_negative_numbers = true)]
     start: Vec<f64>,
-    /// s.
+    /// Duration, s.
     #[arg(long, default_value_t = figures::ARM_DURATION)]
     duration: f64,
-    /// Tick, ms.
+    /// Time step, ms.
     #[arg(long, default_value_t = 1.0)]
     tick: f64,
-    /// Where every tick goes, in CSV.
+    /// Output of every tick, in CSV.
     #[arg(long)]
     output: Option<PathBuf>,
 }
@@ -94,12 +94,13 @@ pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
     }
     print(&table)?;
     print(&format!(
-        "{}{}; energy error {:.1e} of the turnover; status {}",
+        "{}{}{}; energy error {:.1e} of the turnover; status {}",
         match outcome.swings.map(|swings| swings.settle()) {
             Some(true) => "settles",
             Some(false) => "does not settle",
             None => "too short a run to be judged: 3 s",
         },
+        outcome.period.map_or(String::new(), |period| format!(", period {period:.2} s")),
         if outcome.out_of_range { "; a joint was beyond its range" } else { "" },
         outcome.energy_error,
         status_names(outcome.status),

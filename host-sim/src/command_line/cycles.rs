@@ -1,8 +1,11 @@
 //! `vm cycles`.
 
 use super::{complain, print};
-use crate::cycles::{self, Argument, CLOCKS, Cost, MARGIN, Part, Profile, Row, Spread, Tracer};
+use crate::cycles::{
+    self, Argument, CLOCKS, Cost, MARGIN, Part, Profile, Row, Spread, Tracer, UnitCost,
+};
 use crate::readme;
+use crate::trace::write_atomically;
 use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
@@ -19,22 +22,23 @@ pub struct CyclesArgs {
     /// what is measured.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     check: bool,
-    /// Write the tables into the README.
+    /// Write the README's tables, and figure 7's data/computation.csv.
     #[arg(long, conflicts_with_all = ["case", "elf", "check"])]
     write: bool,
     /// Share of the core's time that muscles may take, 0.01 to 1.
     #[arg(long, default_value_t = 0.5, value_parser = share)]
     share: f64,
-    /// Break one case down by function and class of instruction.
+    /// Profile one case by function, file and class of instruction.
     #[arg(long, conflicts_with = "elf")]
     case: Option<String>,
     /// Only this tick of the case, counted from 0.
     #[arg(long, requires = "case")]
     tick: Option<usize>,
-    /// Break a function of another program for a Cortex-M down.
+    /// Profile a function of another Cortex-M program.
     #[arg(long, requires = "symbol", value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// The function: its name or the end of it behind `::`, its symbol with hash, or its address (0x08000150).
+    /// Function: its name (or what follows the last `::` of it), its mangled symbol, or its address
+    /// (0x08000150).
     #[arg(long, requires = "elf", value_name = "NAME")]
     symbol: Option<String>,
     /// Call the function directly instead of running the program: with integers, zeros:64 or
@@ -42,17 +46,18 @@ pub struct CyclesArgs {
     #[arg(long, requires = "elf", num_args = 0.., allow_negative_numbers = true,
           value_name = "ARGS")]
     entry: Option<Vec<Argument>>,
-    /// QEMU's name of the machine that the program is for.
+    /// QEMU machine that the program is for.
     #[arg(long, requires = "elf", default_value = cycles::MACHINE)]
     machine: String,
-    /// Stop the program after so many seconds; the calls that returned until then are counted.
+    /// Time limit of the program, s: it is stopped then, and the calls that have returned are
+    /// counted.
     #[arg(long, requires = "elf", default_value_t = 60, value_name = "SECONDS",
           value_parser = clap::value_parser!(u32).range(1..=86_400))]
     timeout: u32,
-    /// List the addresses that cost most, so many of them.
+    /// Number of most expensive addresses to list.
     #[arg(long, num_args = 0..=1, default_missing_value = "40", value_name = "COUNT")]
     listing: Option<usize>,
-    /// How executed addresses are got from QEMU.
+    /// Source of the executed addresses.
     #[arg(long, value_enum, default_value_t = Tracer::Auto)]
     tracer: Tracer,
 }
@@ -94,8 +99,10 @@ pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
 
 fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     let rows = cycles::report(args.tracer)?;
+    let costs = UnitCost::of(&rows);
     if args.write {
         readme::CYCLES.write(&readme::cycles(&rows))?;
+        write_atomically(&UnitCost::path(), &UnitCost::file(&costs)?)?;
         return Ok(true);
     }
     if args.json {
@@ -120,7 +127,11 @@ fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     if !current {
         complain("the README's tables are not what is measured: cargo vm cycles --write");
     }
-    Ok(failed.is_empty() && current)
+    let counted = UnitCost::counted()? == costs;
+    if !counted {
+        complain("data/computation.csv is not what is measured: cargo vm cycles --write");
+    }
+    Ok(failed.is_empty() && current && counted)
 }
 
 fn new_table(header: &[&str], right_from: usize) -> Table {

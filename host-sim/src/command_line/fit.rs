@@ -10,19 +10,19 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct FitArgs {
-    /// The muscle to start from, in TOML, or its name in `vm muscles`.
+    /// Initial muscle, in TOML, or a name of `vm muscles`.
     #[arg(long)]
     muscle: PathBuf,
     /// Recordings and free parameters, in TOML (host-sim/docs/trials.md).
     #[arg(long)]
     trials: PathBuf,
-    /// The folder of the recordings, if it is not that of the list.
+    /// Folder of the recordings, if not that of the list.
     #[arg(long)]
     data: Option<PathBuf>,
-    /// Where the fitted muscle goes, in TOML.
+    /// Fitted muscle, in TOML.
     #[arg(long, default_value = "fitted.toml")]
     out: PathBuf,
-    /// Where a page of every trial and parameter goes, in HTML.
+    /// Report of every trial and parameter, in HTML.
     #[arg(long)]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -32,10 +32,10 @@ pub struct FitArgs {
 /// How to search.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct SearchArgs {
-    /// How many starts: the first where the muscle is, the others drawn.
+    /// Number of starts: the first at the muscle's values, the others random.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// What they are drawn from: the same seed gives the same bytes.
+    /// Random seed of the starts; the same seed gives the same bytes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }

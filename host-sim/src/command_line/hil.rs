@@ -5,31 +5,34 @@ use super::run::check_run;
 use crate::engine;
 use crate::hil::{self, Client, Emulated, HilError, Line, Played};
 use crate::muscles::find;
+use crate::output_file::STANDARD;
 use crate::progress;
 use crate::reference::{Mode, Muscle};
 use crate::trace::{self, InputTrace, OutputRow};
 use clap::{Args, ValueEnum};
 use std::error::Error;
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct HilArgs {
-    /// The muscle, in TOML, or its name in `vm muscles`.
+    /// Muscle, in TOML, or a name of `vm muscles`.
     #[arg(long)]
     muscle: PathBuf,
-    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick of the device.
+    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick; `-` is standard
+    /// input.
     #[arg(long)]
     input: PathBuf,
-    /// Outputs of the device, in CSV.
+    /// Outputs of the device, in CSV; `-` is standard output.
     #[arg(long, default_value = "hil.csv")]
     output: PathBuf,
     /// Recruitment mode.
     #[arg(long, value_enum, default_value = "continuous")]
     mode: DeviceMode,
-    /// The serial port of a board; without one, the firmware is built and runs in QEMU.
+    /// Serial port of a board; without one, the firmware is built and runs in QEMU.
     #[arg(long)]
     port: Option<String>,
-    /// Bits per second on that port.
+    /// Baud rate of that port.
     #[arg(long, default_value_t = 115_200, requires = "port")]
     baud: u32,
 }
@@ -67,7 +70,7 @@ pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
         .collect();
     trace::write_outputs(&args.output, &rows)?;
     let Played { words, report, .. } = &played;
-    print(&format!(
+    let told = format!(
         "{} rows and {} words of state, all bits equal to the host's; longest tick {} us, {} late of {}, \
          {} frames broken and {} refused",
         rows.len(),
@@ -77,7 +80,13 @@ pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
         report.ticks,
         report.frames.broken,
         report.frames.refused,
-    ))?;
+    );
+    if args.output == Path::new(STANDARD) {
+        // Where the outputs are on standard output, nothing else is.
+        let _nobody_listens = writeln!(std::io::stderr(), "{told}");
+    } else {
+        print(&told)?;
+    }
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! `vm plot`: a run as SVG.
 
-use crate::chart::{Chart, Panel, Point};
+use crate::chart::{Chart, Line, Panel, Point};
 use crate::trace::{self, InputTrace};
 use clap::Args;
 use std::error::Error;
@@ -29,19 +29,21 @@ pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
         return Err(trace::cell_error(&args.run, 2, "t_s", problem).into());
     }
     let labels = ["force (N)", "length (L0)", "velocity (L0/s)"];
-    let panel = |y, points| Panel { y, lines: vec![(String::new(), points)] };
     let mut panels: Vec<Panel> = labels
         .into_iter()
         .enumerate()
-        .map(|(index, y)| panel(y, rows.iter().map(|(_, row)| (row[0], row[index + 1])).collect()))
+        .map(|(index, y)| {
+            let points = rows.iter().map(|(_, row)| (row[0], row[index + 1]));
+            Panel::new(y, vec![Line::new("", points)])
+        })
         .collect();
     if let Some(path) = &args.input {
         let inputs = input_lines(&trace::read_inputs(path)?);
-        panels.extend(inputs.map(|(y, points)| panel(y, points)));
+        panels.extend(inputs.map(|(y, points)| Panel::input(y, vec![Line::new("", points)])));
     }
     let title = args.run.file_name().map_or(Path::new("run"), Path::new);
     let title = title.display().to_string();
-    let svg = Chart { title: &title, x: "time (s)", panels }.draw()?;
+    let svg = Chart { title: &title, x: "time (s)", panels }.draw();
     trace::write_atomically(&args.output, svg.as_bytes())?;
     Ok(())
 }

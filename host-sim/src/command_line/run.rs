@@ -17,7 +17,8 @@ pub struct RunArgs {
     /// Muscle, in TOML, or a name of `vm muscles`.
     #[arg(long)]
     muscle: PathBuf,
-    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick; `-` is standard input.
+    /// Inputs, in CSV: t_s,activation,path_length_m,stim_hz, one row per tick; `-` is standard
+    /// input.
     #[arg(long)]
     input: PathBuf,
     /// Outputs, in CSV; `-` is standard output.
@@ -84,15 +85,16 @@ fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
         format!("; written to {}", args.output.display())
     };
     format!(
-        "{ticks} ticks, {mode}, {}: peak force {:.3} N at {} s; fascicle length {least:.4} to {most:.4} \
-         L_ce0; {flagged}{to}",
+        "{ticks} ticks, {mode}, {}: peak force {:.3} N at {} s; fascicle length {least:.4} to \
+         {most:.4} L_ce0; {flagged}{to}",
         args.arithmetic.name(),
         force(&peak),
         trace::time_digits(trace.time(peak)),
     )
 }
 
-/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle can rest.
+/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle
+/// can rest.
 pub(super) fn check_run(
     output: &Path,
     input: &Path,
@@ -110,9 +112,9 @@ pub(super) fn check_run(
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
         let problem = format!(
-            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with the \
-             fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps them at lengths \
-             that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
+            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with \
+             the fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps \
+             them at lengths that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
         );
         return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
     }

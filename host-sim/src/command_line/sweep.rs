@@ -13,36 +13,37 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = keys())]
 pub struct SweepArgs {
-    /// Where the rows go, in CSV. If there are some already, of the same sweep, it goes on with the others.
+    /// Output table, in CSV; an incomplete table of the same sweep is resumed.
     #[arg(long, default_value = "sweep.csv")]
     output: PathBuf,
-    /// So many cases drawn at random of every mode, instead of a grid.
+    /// Number of random cases per mode, instead of a grid.
     #[arg(long, value_name = "COUNT")]
     random: Option<usize>,
-    /// What they are drawn with.
+    /// Random seed.
     #[arg(long, default_value_t = 1, requires = "random")]
     seed: u64,
-    /// What varies, by a key of those below: key=value,value,... or, drawn at random, key=from:to.
+    /// Values of a key (listed below): key=value,value,... or, with --random, key=from:to.
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// How muscles are recruited.
+    /// Recruitment modes.
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["continuous", "fes"])]
     modes: Vec<ModeName>,
-    /// What they are computed in, besides the reference.
+    /// Arithmetics to compare with the reference.
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["f32", "fixed"])]
     arithmetics: Vec<Arithmetic>,
-    /// How many of the worst cases are listed, of each arithmetic with and without flags.
+    /// Worst cases to list per arithmetic, with and without flags.
     #[arg(long, default_value_t = 5)]
     worst: usize,
-    /// Only this case: its muscle and its inputs as files in the folder of --replay.
+    /// Write this case's muscle and inputs to the folder of --replay, instead of sweeping.
     #[arg(long, requires = "replay", conflicts_with = "output")]
     case: Option<usize>,
-    /// A folder for a case's muscle.toml and input.csv; made if it is not there.
+    /// Folder for muscle.toml and input.csv of --case; created if missing.
     #[arg(long, requires = "case", value_name = "FOLDER")]
     replay: Option<PathBuf>,
 }
 
-/// The keys of `--vary`: limits, the value in a grid that does not vary it, and the range it is drawn from.
+/// The keys of `--vary`: limits, the value in a grid that does not vary it, and the range it is
+/// drawn from.
 fn keys() -> String {
     let mut text = String::from("Keys of --vary (limits; in a grid; at random):\n");
     for key in KEYS {
@@ -154,7 +155,8 @@ fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Err
     }
     for arithmetic in sweep.arithmetics.iter().chain([&Arithmetic::Reference]) {
         print(&format!(
-            "cargo vm run --muscle '{}' --input '{}' --output '{}' --mode {mode} --arithmetic {name}",
+            "cargo vm run --muscle '{}' --input '{}' --output '{}' --mode {mode} \
+             --arithmetic {name}",
             muscle.display(),
             input.display(),
             folder.join(arithmetic.name()).with_extension("csv").display(),

@@ -41,8 +41,9 @@ const MODES: [&str; 3] = ["continuous", "fes", "discrete"];
 /// Arithmetics of the summary: those for a target.
 const ARITHMETICS: [&str; 2] = ["f32", "fixed"];
 
-/// A heading, and a line per mode and arithmetic: the largest error at ticks of 1 ms with its limit, whether all
-/// comparisons of that mode and arithmetic pass, and the time that computing them took.
+/// A heading, and a line per mode and arithmetic: the largest error at ticks of 1 ms with its
+/// limit, whether all comparisons of that mode and arithmetic pass, and the time that computing
+/// them took.
 fn summary(report: &Report) -> String {
     let failed = report.rows.iter().filter(|row| !row.pass).count();
     let verdict = if failed == 0 { "all pass".to_owned() } else { format!("{failed} FAIL") };
@@ -149,7 +150,10 @@ mod tests {
         let words: Vec<Vec<&str>> =
             text.lines().map(|line| line.split_whitespace().collect()).collect();
         assert!(words[0].join(" ").starts_with("5 comparisons in 2.0 s: 1 FAIL (--all"), "{text}");
-        assert_eq!(words[1], "fes f32 kinks 0.3000 of 0.5 % FAIL 0.75 s".split(' ').collect::<Vec<_>>());
+        assert_eq!(
+            words[1],
+            "fes f32 kinks 0.3000 of 0.5 % FAIL 0.75 s".split(' ').collect::<Vec<_>>()
+        );
         // Not-a-number is worst of all.
         assert_eq!(words[2][..4], ["discrete", "fixed", "steps", "NaN"]);
         assert_eq!(table(&report).row_iter().count(), 5);

@@ -46,6 +46,11 @@ impl Budgets {
         toml::from_str(BUDGETS)
     }
 
+    /// Most bytes of a state of a case.
+    pub fn state_bytes(&self, case: &str) -> Option<u32> {
+        self.model.get(case).map(|budget| budget.state_bytes)
+    }
+
     /// Holds a case's row to what it may cost.
     pub fn hold(&self, case: &Case, row: &mut Row) {
         let budget = self.model.get(case.name);

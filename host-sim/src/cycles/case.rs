@@ -7,7 +7,7 @@ use crate::reference::Mode;
 use crate::scenario::{self, Scenario, paper_muscle};
 use literal_port::{Drive, LiteralMuscle, Real, STABLE_STEPS};
 use rayon::prelude::*;
-use vm_nostd::{FascicleLength, NaturalContinuous, NaturalDiscrete, State};
+use vm_nostd::{EffectiveLength, FascicleLength, NaturalContinuous, NaturalDiscrete, State};
 
 /// What a case computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,12 +18,22 @@ pub enum Subject {
     Literal(Mode, Arithmetic),
     /// A tick of the model in `f32` with so many motor units of each of two types.
     Discrete(usize),
+    /// The same with an effective length of each unit.
+    EffectiveLength(usize),
     /// The functions of libm that one evaluation of the equations calls.
     Kernels,
 }
 
-/// The mode of a discrete case.
-type DiscreteMode<const UNITS: usize> = NaturalDiscrete<FascicleLength, UNITS>;
+/// Bytes of the state of a muscle of so many motor units of each of two types, as a function of the
+/// acting length.
+macro_rules! bytes_of_units {
+    ($length:ty, $count:expr, $($each:literal => $all:literal),*) => {
+        match $count {
+            $($each => size_of::<State<f32, NaturalDiscrete<$length, $all>, 2>>(),)*
+            other => unreachable!("no case has {other} units"),
+        }
+    };
+}
 
 /// One row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,10 +49,10 @@ pub struct Case {
 }
 
 /// Every case, in the order of the bench.
-pub const CASES: [Case; 11] = {
+pub const CASES: [Case; 19] = {
     use Arithmetic::{F32, F64, Fixed};
     use Mode::{Continuous, Fes};
-    use Subject::{Discrete, Kernels, Literal, Model};
+    use Subject::{Discrete, EffectiveLength, Kernels, Literal, Model};
     const fn case(
         name: &'static str,
         function: &'static str,
@@ -53,6 +63,7 @@ pub const CASES: [Case; 11] = {
     }
     // A tick of a baseline costs much the same whatever its inputs are: a few tell.
     let (some, few) = (Some(500), Some(20));
+    let of_figure = Some(100);
     [
         case("continuous-f32", "step_continuous_f32", Model(Continuous, F32), None),
         case("fes-f32", "step_fes_f32", Model(Fes, F32), None),
@@ -65,6 +76,14 @@ pub const CASES: [Case; 11] = {
         case("kernels-f32", "kernels_f32", Kernels, some),
         case("discrete-1+1-f32", "step_discrete_2_f32", Discrete(1), some),
         case("discrete-30+30-f32", "step_discrete_60_f32", Discrete(30), some),
+        case("discrete-3+3-f32", "step_discrete_6_f32", Discrete(3), of_figure),
+        case("discrete-6+6-f32", "step_discrete_12_f32", Discrete(6), of_figure),
+        case("discrete-15+15-f32", "step_discrete_30_f32", Discrete(15), of_figure),
+        case("leff-1+1-f32", "step_leff_2_f32", EffectiveLength(1), of_figure),
+        case("leff-3+3-f32", "step_leff_6_f32", EffectiveLength(3), of_figure),
+        case("leff-6+6-f32", "step_leff_12_f32", EffectiveLength(6), of_figure),
+        case("leff-15+15-f32", "step_leff_30_f32", EffectiveLength(15), of_figure),
+        case("leff-30+30-f32", "step_leff_60_f32", EffectiveLength(30), of_figure),
     ]
 };
 
@@ -83,7 +102,7 @@ impl Case {
     pub fn mode(&self) -> Option<Mode> {
         match self.subject {
             Subject::Model(mode, _) | Subject::Literal(mode, _) => Some(mode),
-            Subject::Kernels | Subject::Discrete(_) => None,
+            Subject::Kernels | Subject::Discrete(_) | Subject::EffectiveLength(_) => None,
         }
     }
 
@@ -91,13 +110,20 @@ impl Case {
     pub fn arithmetic(&self) -> Arithmetic {
         match self.subject {
             Subject::Model(_, arithmetic) | Subject::Literal(_, arithmetic) => arithmetic,
-            Subject::Kernels | Subject::Discrete(_) => Arithmetic::F32,
+            Subject::Kernels | Subject::Discrete(_) | Subject::EffectiveLength(_) => {
+                Arithmetic::F32
+            }
         }
     }
 
     /// Whether it is the model, and thus held to a budget.
     pub fn is_model(&self) -> bool {
         matches!(self.subject, Subject::Model(..))
+    }
+
+    /// Whether it is in the README's table; the others are only for figure 7.
+    pub fn is_listed(&self) -> bool {
+        !matches!(self.subject, Subject::EffectiveLength(_) | Subject::Discrete(3 | 6 | 15))
     }
 
     /// The module whose constants are the tables of what it is computed in.
@@ -112,8 +138,12 @@ impl Case {
     pub fn state_bytes(&self) -> u32 {
         let bytes = match (self.subject, self.arithmetic()) {
             (Subject::Kernels, _) => 0,
-            (Subject::Discrete(1), _) => size_of::<State<f32, DiscreteMode<2>, 2>>(),
-            (Subject::Discrete(_), _) => size_of::<State<f32, DiscreteMode<60>, 2>>(),
+            (Subject::Discrete(units), _) => {
+                bytes_of_units!(FascicleLength, units, 1 => 2, 3 => 6, 6 => 12, 15 => 30, 30 => 60)
+            }
+            (Subject::EffectiveLength(units), _) => {
+                bytes_of_units!(EffectiveLength, units, 1 => 2, 3 => 6, 6 => 12, 15 => 30, 30 => 60)
+            }
             (Subject::Model(..), Arithmetic::F64) => size_of::<State<f64, NaturalContinuous, 2>>(),
             (Subject::Model(..), Arithmetic::Fixed) => {
                 size_of::<State<vm_nostd::Fixed, NaturalContinuous, 2>>()

@@ -31,7 +31,8 @@ pub enum FollowError {
     /// The program was stopped before a function had returned.
     #[error(
         "{} is still running after {seconds} s (--timeout), and {function} {}",
-        program.display(), if *called { "was called and has not returned" } else { "was not called" }
+        program.display(),
+        if *called { "was called and has not returned" } else { "was not called" }
     )]
     Endless {
         /// The program.
@@ -159,13 +160,16 @@ pub fn follow(
     }
     let Follower { mut decoded, estimators, calls, call, .. } = follower;
     let mut all = Vec::new();
-    for (index, ((estimator, calls), name)) in estimators.iter().zip(calls).zip(functions).enumerate()
+    for (index, ((estimator, calls), name)) in
+        estimators.iter().zip(calls).zip(functions).enumerate()
     {
         if calls.is_empty() {
             let called = call.as_ref().is_some_and(|call| call.function == index);
             let function = (*name).to_owned();
             return Err(match stopped {
-                Some((program, seconds)) => FollowError::Endless { program, seconds, function, called },
+                Some((program, seconds)) => {
+                    FollowError::Endless { program, seconds, function, called }
+                }
                 None if called => FollowError::NotReturned(function),
                 None => FollowError::NotCalled(function),
             });

@@ -168,8 +168,8 @@ impl Image {
         self.sections.push((address, code));
     }
 
-    /// The one function whose name is `name` or ends with `::name`, whose symbol it is, or which begins at the
-    /// address that it gives in hexadecimal (0x...).
+    /// The one function whose name is `name` or ends with `::name`, whose symbol it is, or which
+    /// begins at the address that it gives in hexadecimal (0x...).
     pub fn function(&self, name: &str) -> Result<&Function, ImageError> {
         let ending = format!("::{name}");
         let address = name.strip_prefix("0x").map(|digits| digits.replace('_', ""));

@@ -132,8 +132,8 @@ fn locate(runs: &[Run], tick: usize) -> Option<(&Run, usize)> {
     None
 }
 
-/// All calls of a function of an image that return before `timeout`, as its own program makes them; or one call that
-/// we make, with `arguments`.
+/// All calls of a function of an image that return before `timeout`, as its own program makes them;
+/// or one call that we make, with `arguments`.
 pub fn of_image(
     path: &Path,
     function: &str,

@@ -164,6 +164,17 @@ pub enum ReportError {
     Budgets(#[from] toml::de::Error),
 }
 
+/// Whether a case of a name is in the README's table.
+pub fn is_listed(case: &str) -> bool {
+    Case::named(case).is_none_or(Case::is_listed)
+}
+
+/// Bytes of the state of a case of the model, and its budget.
+pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
+    let most = Budgets::read()?.state_bytes(case);
+    Ok(Case::named(case).map(Case::state_bytes).zip(most))
+}
+
 /// Measures all cases and holds the model's to their budgets.
 pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
     let budgets: Budgets = Budgets::read()?;
@@ -259,6 +270,7 @@ pub(super) mod tests {
         let followed = Followed {
             calls: vec![cost(900), cost(1000), cost(800)],
             stack_bytes: 200,
+            stopped: false,
             code: [(0x100, 3000), (0x2000, 2000)].into(),
             executions: Vec::new(),
         };

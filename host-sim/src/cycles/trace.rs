@@ -140,7 +140,8 @@ struct Run<'a> {
     blocks: u64,
 }
 
-/// Kills a child when its time is up: a program that sleeps executes nothing by which it could be noticed.
+/// Kills a child when its time is up: a program that sleeps executes nothing by which it could be
+/// noticed.
 struct Watchdog {
     expired: Arc<AtomicBool>,
     /// Dropped with the watchdog, which ends the thread that waits.

@@ -1,8 +1,8 @@
 //! Figure 3: the planar arm under constant activations, with and without effective length.
 
-use super::{FiguresError, Folder, TIME_STEP};
+use super::{Figures, FiguresError, TIME_STEP};
 use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
-use crate::chart::{Chart, Panel};
+use crate::chart::{Chart, Line, Panel};
 use crate::engine::Arithmetic;
 use crate::reference::Mode;
 use rayon::prelude::*;
@@ -12,8 +12,8 @@ use serde::Serialize;
 pub const ACTIVATIONS: Activations = Activations { shoulder: 0.9, elbow: 0.4, biarticular: 0.0 };
 /// Where the arm starts, degrees: half way forward, elbow bent at a right angle.
 pub const START: [f64; 2] = [45.0, 90.0];
-/// s.
-pub const DURATION: f64 = 5.0;
+/// Long enough to tell swings that go on from swings that grow or die out, s.
+pub const DURATION: f64 = 30.0;
 
 const MODES: [(&str, Mode); 3] = [
     ("continuous", Mode::Continuous),
@@ -35,7 +35,7 @@ struct Row {
 
 /// What became of the arm: with continuous recruitment, with discrete, and with effective length.
 pub(super) fn make(
-    folder: &Folder<'_>,
+    figures: &mut Figures,
     arithmetic: Arithmetic,
 ) -> Result<[Outcome; 3], FiguresError> {
     let arm = Arm::built_in();
@@ -70,23 +70,25 @@ pub(super) fn make(
             effective_length_elbow_deg: degrees(c, 1),
         })
         .collect();
-    folder.table("arm.csv", &rows)?;
-    let panel = |y, joint| Panel {
-        y,
-        lines: MODES
-            .iter()
-            .zip(&runs)
-            .map(|((name, _), run)| {
-                let points = run.iter().map(|moment| (moment.time, degrees(moment, joint)));
-                ((*name).to_owned(), points.collect())
-            })
-            .collect(),
+    figures.table("arm.csv", &rows)?;
+    let panel = |y, joint| {
+        let line = |((name, _), run): (&(&str, Mode), &Vec<Moment>)| {
+            Line::new(*name, run.iter().map(|moment| (moment.time, degrees(moment, joint))))
+        };
+        Panel::new(y, MODES.iter().zip(&runs).map(line).collect())
     };
+    let Activations { shoulder, elbow, biarticular } = ACTIVATIONS;
+    let inputs = [("shoulder", shoulder), ("elbow", elbow), ("biarticular", biarticular)];
+    let input = |(name, value)| Line::new(name, [(0.0, value), (DURATION, value)]);
     let chart = Chart {
-        title: "Arm at constant activations: shoulder 0.9, elbow 0.4, biarticular 0",
+        title: "Figure 3: an arm at constant activations",
         x: "time (s)",
-        panels: vec![panel("shoulder angle (degrees)", 0), panel("elbow angle (degrees)", 1)],
+        panels: vec![
+            Panel::input("U (1)", inputs.map(input).into()),
+            panel("shoulder angle (degrees)", 0),
+            panel("elbow angle (degrees)", 1),
+        ],
     };
-    folder.figure("arm.svg", &chart)?;
+    figures.figure("arm.svg", &chart);
     Ok([continuous, discrete, effective].map(|run| Outcome::of(&arm, run, TIME_STEP)))
 }

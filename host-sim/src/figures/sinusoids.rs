@@ -1,9 +1,10 @@
 //! Figures 5 and 6: sinusoids of activation (0 to 1) and of path length (14 to 18 cm), 1 to 10 Hz, with
 //! continuous and with discrete recruitment, and with effective length.
 
-use super::{Case, FiguresError, Folder, PATH, TIME_STEP, cases};
-use crate::chart::{Chart, Panel};
+use super::{Case, Figures, FiguresError, PATH, TIME_STEP, cases};
+use crate::chart::{Chart, Line, Panel};
 use crate::engine::{self, Arithmetic, RunError};
+use crate::metrics::ForceError;
 use crate::reference::{Input, Mode};
 use crate::trace::InputTrace;
 use rayon::prelude::*;
@@ -15,8 +16,11 @@ const FREQUENCIES: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 const SETTLING: f64 = 2.0;
 /// How long those last: whole cycles of every frequency, s.
 const COUNTED: f64 = 1.0;
-/// The frequency whose responses are drawn, Hz.
-const DRAWN: u32 = 3;
+/// The frequency of the paper's figure 6, whose responses are drawn, Hz.
+pub(super) const DRAWN: u32 = 3;
+/// Peak forces of the discrete curves that the paper prints in figures 5 and 6, activation and
+/// length (N).
+pub(super) const PRINTED_PEAKS: [f64; 2] = [128.0, 152.0];
 /// Activation while the path swings, and the swing, m.
 const HELD_ACTIVATION: f64 = 0.5;
 const SWING: f64 = 0.02;
@@ -49,6 +53,8 @@ impl Swing {
 pub(super) struct Row {
     pub(super) swing: Swing,
     pub(super) frequency_hz: u32,
+    /// Greatest force of 30 + 30 units, N.
+    pub(super) peak_n: f64,
     /// Mean force of 30 + 30 units, N.
     pub(super) mean_n: f64,
     /// From the least to the greatest force of 30 + 30 units, N.
@@ -58,6 +64,10 @@ pub(super) struct Row {
     pub(super) range_ratio: f64,
     /// Largest difference that effective length makes, in % of the greatest force.
     pub(super) effective_length_pct: f64,
+    /// The same in % of F0.
+    pub(super) effective_length_pct_f0: f64,
+    /// Its root mean square, in % of F0.
+    pub(super) effective_length_rms_pct_f0: f64,
 }
 
 /// Forces of the cycles that count, N.
@@ -82,19 +92,22 @@ struct Response {
 }
 
 impl Response {
-    fn row(&self) -> Row {
+    fn row(&self, f0: f64) -> Row {
         let [continuous, discrete, effective] = &self.forces;
         let ((mean_n, range_n), other) = (mean_and_range(discrete), mean_and_range(continuous));
         let most = discrete.iter().copied().fold(0.0, f64::max);
-        let differences = discrete.iter().zip(effective).map(|(a, b)| (a - b).abs());
+        let difference = ForceError::between(effective, discrete, f0);
         Row {
             swing: self.swing,
             frequency_hz: self.frequency,
+            peak_n: most,
             mean_n,
             range_n,
             mean_ratio: other.0 / mean_n,
             range_ratio: other.1 / range_n,
-            effective_length_pct: 100.0 * differences.fold(0.0, f64::max) / most,
+            effective_length_pct: difference.max * f0 / most,
+            effective_length_pct_f0: difference.max,
+            effective_length_rms_pct_f0: difference.rms,
         }
     }
 }
@@ -109,7 +122,10 @@ struct Point {
     effective_length_n: f64,
 }
 
-pub(super) fn make(folder: &Folder<'_>, arithmetic: Arithmetic) -> Result<Vec<Row>, FiguresError> {
+pub(super) fn make(
+    figures: &mut Figures,
+    arithmetic: Arithmetic,
+) -> Result<Vec<Row>, FiguresError> {
     let [continuous, _, discrete] = cases();
     let effective = Case {
         name: "discrete 30 + 30, effective length",
@@ -142,49 +158,61 @@ pub(super) fn make(folder: &Folder<'_>, arithmetic: Arithmetic) -> Result<Vec<Ro
             })
         })
         .collect();
-    folder.table("sinusoid_responses.csv", &points)?;
-    let panels = drawn().map(|response| Panel {
-        y: match response.swing {
-            Swing::Activation => "force, U 0 to 1 (N)",
-            Swing::Length => "force, path 14 to 18 cm (N)",
-        },
-        lines: cases
+    figures.table("sinusoid_responses.csv", &points)?;
+    let panels = drawn().flat_map(|response| {
+        let trace = response.swing.trace(DRAWN);
+        let counted = &trace.inputs[trace.inputs.len() - response.forces[0].len()..];
+        let over_time = |label: &str, values: &mut dyn Iterator<Item = f64>| {
+            Line::new(label, (0..).map(|tick| f64::from(tick) * TIME_STEP).zip(values))
+        };
+        let (input, force, printed): (Panel, &str, f64) = match response.swing {
+            Swing::Activation => {
+                let mut values = counted.iter().map(|input| input.activation);
+                let input = Panel::input("U (1)", vec![over_time("", &mut values)]);
+                (input, "force, L_mt 16 cm (N)", PRINTED_PEAKS[0])
+            }
+            Swing::Length => {
+                let mut values = counted.iter().map(|input| input.path_length * 100.0);
+                let input = Panel::input("L_mt (cm)", vec![over_time("", &mut values)]);
+                (input, "force, U 0.5 (N)", PRINTED_PEAKS[1])
+            }
+        };
+        let lines = cases
             .iter()
             .zip(&response.forces)
-            .map(|(case, forces)| {
-                let times = (0..).map(|tick| f64::from(tick) * TIME_STEP);
-                (case.name.to_owned(), times.zip(forces.iter().copied()).collect())
-            })
-            .collect(),
+            .map(|(case, forces)| over_time(case.name, &mut forces.iter().copied()));
+        let peak = Line::new("peak printed in the paper", [(0.0, printed), (COUNTED, printed)]);
+        [input, Panel::new(force, lines.chain([peak]).collect())]
     });
-    let title = "Response to sinusoids at 3 Hz";
+    let title = "Figures 5 and 6: response to sinusoids at 3 Hz";
     let chart = Chart { title, x: "time (s)", panels: panels.collect() };
-    folder.figure("sinusoid_responses.svg", &chart)?;
+    figures.figure("sinusoid_responses.svg", &chart);
 
-    let rows: Vec<Row> = responses.iter().map(Response::row).collect();
-    folder.table("sinusoids.csv", &rows)?;
+    let f0 = cases[0].muscle.f0();
+    let rows: Vec<Row> = responses.iter().map(|response| response.row(f0)).collect();
+    figures.table("sinusoids.csv", &rows)?;
     let line = |name: &str, swing: Swing, value: fn(&Row) -> f64| {
-        let of_swing = rows.iter().filter(|row| row.swing == swing);
-        (name.to_owned(), of_swing.map(|row| (f64::from(row.frequency_hz), value(row))).collect())
+        let of_swing = rows.iter().filter(move |row| row.swing == swing);
+        Line::new(name, of_swing.map(|row| (f64::from(row.frequency_hz), value(row))))
     };
-    let ratios = Panel {
-        y: "continuous over discrete 30 + 30 (1)",
-        lines: vec![
-            line("mean, activation", Swing::Activation, |row| row.mean_ratio),
-            line("range, activation", Swing::Activation, |row| row.range_ratio),
-            line("mean, length", Swing::Length, |row| row.mean_ratio),
-            line("range, length", Swing::Length, |row| row.range_ratio),
+    let ratios = Panel::new(
+        "continuous / discrete (1)",
+        vec![
+            line("mean force, sinusoids of activation", Swing::Activation, |row| row.mean_ratio),
+            line("range of force", Swing::Activation, |row| row.range_ratio),
         ],
-    };
-    let effective = Panel {
-        y: "largest change by L_eff (% of force)",
-        lines: vec![
-            line("activation", Swing::Activation, |row| row.effective_length_pct),
-            line("length", Swing::Length, |row| row.effective_length_pct),
+    );
+    let effective = Panel::new(
+        "change by L_eff (% of peak)",
+        vec![
+            line("sinusoids of activation", Swing::Activation, |row| row.effective_length_pct),
+            line("sinusoids of length (figure 6 has 3 Hz)", Swing::Length, |row| {
+                row.effective_length_pct
+            }),
         ],
-    };
-    let title = "Sinusoids of activation and of path length";
+    );
+    let title = "Figures 5(e) and 6: sinusoids of 1 to 10 Hz";
     let chart = Chart { title, x: "frequency (Hz)", panels: vec![ratios, effective] };
-    folder.figure("sinusoids.svg", &chart)?;
+    figures.figure("sinusoids.svg", &chart);
     Ok(rows)
 }

@@ -1,15 +1,12 @@
 //! A fit as one HTML page that needs no network.
 
 use super::outcome::{Fit, TrialFit};
-use crate::chart::{Chart, Panel, Point};
+use crate::chart::{Chart, Line, Panel};
 use askama::Template;
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// A plot could not be drawn.
-    #[error("a plot could not be drawn: {0}")]
-    Draw(String),
     /// The page could not be put together.
     #[error(transparent)]
     Page(#[from] askama::Error),
@@ -86,15 +83,14 @@ pub fn page(fit: &Fit, origin: &str) -> Result<String, PageError> {
                 vec![name, format!("{max:.4}"), format!("{rms:.4}")]
             })
             .collect(),
-        plots: fit.trials.iter().map(plot).collect::<Result<_, _>>()?,
+        plots: fit.trials.iter().map(plot).collect(),
     };
     Ok(page.render()?)
 }
 
-fn plot(trial: &TrialFit) -> Result<String, PageError> {
-    let line = |name: &str, forces: &[f64]| -> (String, Vec<Point>) {
-        let points = trial.times.iter().copied().zip(forces.iter().copied());
-        (name.to_owned(), points.collect())
+fn plot(trial: &TrialFit) -> String {
+    let line = |name: &str, forces: &[f64]| {
+        Line::new(name, trial.times.iter().copied().zip(forces.iter().copied()))
     };
     let role = match trial.role {
         super::Role::Fit => "fitted",
@@ -107,12 +103,12 @@ fn plot(trial: &TrialFit) -> Result<String, PageError> {
         title: &title,
         x: "time (s)",
         panels: vec![
-            Panel {
-                y: "force (N)",
-                lines: vec![line("measured", &trial.measured), line(role, &trial.model)],
-            },
-            Panel { y: "error (N)", lines: vec![line("error", &errors)] },
+            Panel::new(
+                "force (N)",
+                vec![line("measured", &trial.measured), line(role, &trial.model)],
+            ),
+            Panel::new("error (N)", vec![line("error", &errors)]),
         ],
     };
-    chart.draw().map_err(PageError::Draw)
+    chart.draw()
 }

@@ -1,7 +1,7 @@
 //! The front page's picture: force over time under FES, as the model computes it in `f32`.
 
 use super::ReadmeError;
-use crate::chart::{Chart, Panel, Point};
+use crate::chart::{Chart, Line, Panel, Point};
 use crate::engine::{self, Arithmetic};
 use crate::reference::{Input, Mode};
 use crate::scenario::paper_muscle;
@@ -25,11 +25,11 @@ const END: usize = 1400;
 pub fn picture() -> Result<String, ReadmeError> {
     let lines = FREQUENCIES
         .iter()
-        .map(|&frequency| Ok((format!("{frequency} pps"), force(frequency)?)))
+        .map(|&frequency| Ok(Line::new(format!("{frequency} pps"), force(frequency)?)))
         .collect::<Result<Vec<_>, ReadmeError>>()?;
-    let panels = vec![Panel { y: "tendon force (N)", lines }];
+    let panels = vec![Panel::new("tendon force (N)", lines)];
     let title = "FES of a muscle of 266 N, path 16 cm: full stimulus from 0.1 to 0.9 s";
-    Chart { title, x: "time (s)", panels }.draw().map_err(ReadmeError::Draw)
+    Ok(Chart { title, x: "time (s)", panels }.draw())
 }
 
 /// Force over time at a stimulation frequency.

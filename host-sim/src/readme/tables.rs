@@ -75,7 +75,7 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-    for row in rows {
+    for row in rows.iter().filter(|row| cycles::is_listed(&row.case)) {
         text.push_str(&format!(
             "| {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
             row.case,

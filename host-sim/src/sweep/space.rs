@@ -43,7 +43,14 @@ pub const KEYS: [Key; 14] = [
     // L_se0/L_ce0, and the longest fascicles, L_ce0.
     key("tendon_ratio", "L_se0 / L_ce0", 0.18, (0.1, 5.0), (0.01, 50.0), true),
     key("longest_length_l0", "maximum fascicle length, L_ce0", 1.5, (1.2, 1.6), (0.9, 2.0), false),
-    key("slow_fraction", "PCSA fraction of the slow type", 0.6, (0.05, 0.95), (0.001, 0.999), false),
+    key(
+        "slow_fraction",
+        "PCSA fraction of the slow type",
+        0.6,
+        (0.05, 0.95),
+        (0.001, 0.999),
+        false,
+    ),
     key("recruitment_saturation", "U_r", 0.8, (0.3, 1.0), (0.01, 1.0), false),
     // Activation swings between these.
     key("activation_from", "least activation", 0.2, (0.0, 1.0), (0.0, 1.0), false),
