@@ -35,7 +35,8 @@ pub struct Limits {
     pub rise_ua: u32,
     /// Longest stimulation without a rest, ms; a tick or more. Stopping and arming again does not reset it.
     pub session_ms: u32,
-    /// A pause without stimulation that begins a new session, ms; a tick or more.
+    /// A pause without stimulation that begins a new session, ms; a tick or more. It counts from when the next pulse
+    /// would have come.
     pub rest_ms: u32,
     /// Longest silence of the host, ms; a tick or more.
     pub silence_ms: u32,

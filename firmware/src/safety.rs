@@ -216,19 +216,21 @@ impl Supervisor {
             (State::Latched(_), _) => (),
         }
         let is_armed = self.state == State::Armed;
-        self.count_session(limits.as_ref(), is_armed && stimulates);
+        let goes_on = is_armed && stimulates;
+        let rests = !(is_armed && requested.stimulates()) && self.train_us == 0;
+        self.count_session(limits.as_ref(), goes_on, rests);
         let asked_us = if is_armed { requested.longest_period_us() } else { 0 };
         self.train_us = self.train_us.saturating_sub(self.tick_us).max(asked_us);
         is_armed
     }
 
-    /// A session continues through pauses, stops and faults; only a rest ends it.
-    fn count_session(&mut self, limits: Option<&Limits>, stimulates: bool) {
-        let tick_us = u64::from(self.tick_us);
-        if stimulates {
-            self.session_us = self.session_us.saturating_add(tick_us);
+    /// A session continues through pauses, stops and faults; only a rest ends it. A rest begins where the
+    /// next pulse would have come.
+    fn count_session(&mut self, limits: Option<&Limits>, goes_on: bool, rests: bool) {
+        if goes_on {
+            self.session_us = self.session_us.saturating_add(self.tick_us.into());
         }
-        count(&mut self.rest_us, !stimulates, self.tick_us);
+        count(&mut self.rest_us, rests, self.tick_us);
         if limits.is_some_and(|limits| self.rest_us >= micros(limits.rest_ms)) {
             self.session_us = 0;
         }

@@ -1,9 +1,14 @@
 //! An oracle of the limits that watches the electrodes and hears what the host says, and knows nothing else of the
-//! stimulator: neither its code nor its state. Limits are written out again, and every time is its own.
+//! stimulator: neither its code nor its state. Limits are written out again, and every time is its own. A session is told
+//! by pulses that were put out. That a tick says it is off only makes it stricter: nothing may flow then.
 
+mod channel;
+mod session;
+
+use self::channel::{Asked, Channel, Pulse, SECOND_US};
+use self::session::Session;
 use crate::electrodes::{CHANNELS, Electrodes};
 use firmware::Stimulus;
-use std::collections::VecDeque;
 
 /// What the oracle holds pulses to, in units of the electrodes: counts of 50 mA by 4095, µs.
 #[derive(Clone, Copy, Debug)]
@@ -39,10 +44,9 @@ pub struct Bounds {
 /// For how long after something else was asked for, a pulse of before may still begin: the longest pulse of another
 /// channel, a step, and a tick.
 const BEHIND_US: u64 = 12_000;
-const SECOND_US: u64 = 1_000_000;
 const FOR_EVER: u64 = u64::MAX / 2;
 /// A pulse that is cut short leaves its electrodes connected to each other for so long, up to a step.
-const DISCHARGE_US: u64 = 20_000 - 500;
+const DISCHARGE_US: u64 = 20_000 - 125;
 
 /// A phase with current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,62 +54,6 @@ struct Flow {
     channel: usize,
     is_cathodic: bool,
     counts: u16,
-}
-
-/// A pulse as it was put out.
-#[derive(Clone, Copy, Debug)]
-struct Pulse {
-    begun_us: u64,
-    counts: u16,
-    width_us: u64,
-}
-
-/// What a channel was asked for, and until when.
-#[derive(Clone, Copy, Debug)]
-struct Asked {
-    stimulus: Stimulus,
-    until_us: u64,
-}
-
-/// A channel as its electrodes have felt it.
-#[derive(Debug, Default)]
-struct Channel {
-    /// Of the last second and a bit.
-    pulses: VecDeque<Pulse>,
-    /// The last pulse since the stimulator was last off: what the next may rise from.
-    last: Option<Pulse>,
-    /// Counts times µs since charge was last even.
-    charge: i64,
-    /// When phases of the last second ended, and their squares of counts times µs; and the sum of these.
-    heat: VecDeque<(u64, u64)>,
-    heat_sum: u64,
-    asked: VecDeque<Asked>,
-    /// The shortest period that was asked for since the last pulse.
-    period_us: u64,
-}
-
-impl Channel {
-    /// A phase has ended. The mean square of a second, the strongest pulse in it aside: a second may have a pulse
-    /// more than its frequency says.
-    fn heats(&mut self, now_us: u64, square: u64, most: u64) -> Result<(), String> {
-        self.heat.push_back((now_us, square));
-        self.heat_sum += square;
-        while let Some(&(ended_us, square)) = self.heat.front()
-            && ended_us + SECOND_US <= now_us
-        {
-            self.heat.pop_front();
-            self.heat_sum -= square;
-        }
-        if self.heat_sum <= most * SECOND_US {
-            return Ok(());
-        }
-        // A pulse has two phases, or more steps.
-        let strongest = self.heat.iter().map(|(_, square)| square).max().copied().unwrap_or(0);
-        if self.heat_sum - 2 * strongest <= most * SECOND_US {
-            return Ok(());
-        }
-        Err(format!("{} counts squared, mean of a second", self.heat_sum / SECOND_US))
-    }
 }
 
 /// Watches.
@@ -129,8 +77,7 @@ pub struct Patient {
     drive_us: u64,
     row_us: u64,
     reading_us: u64,
-    session_us: u64,
-    paused_us: u64,
+    session: Session,
     /// Pulses so far.
     pub pulses: u64,
 }
@@ -152,8 +99,7 @@ impl Patient {
             drive_us: 0,
             row_us: 0,
             reading_us: 0,
-            session_us: 0,
-            paused_us: 0,
+            session: Session::default(),
             pulses: 0,
         }
     }
@@ -209,8 +155,8 @@ impl Patient {
         if counts > bounds.counts {
             return Err(format!("{counts} counts"));
         }
-        let period_us = one.asked.iter().map(|asked| asked.stimulus.period_us()).min();
-        let Some(period_us) = period_us.map(u64::from) else {
+        let period_us = one.asked.iter().map(Asked::period_us).min();
+        let Some(period_us) = period_us else {
             return Err(format!("a pulse on channel {channel} that nobody asks for"));
         };
         if let Some(before) = one.pulses.back()
@@ -232,7 +178,24 @@ impl Patient {
         if now_us > oldest_us + 2 * bounds.tick_us {
             return Err("a pulse that outlives what it was asked by".to_owned());
         }
+        let longest_us = self.longest_asked_us(now_us);
+        self.session.pulse(now_us, longest_us, bounds.rest_us);
+        // The tick that sees that it is over, and a pulse that waits for others.
+        if self.session.us > bounds.session_us + bounds.tick_us + BEHIND_US {
+            return Err(format!("a session of {} us", self.session.us));
+        }
         Ok(())
+    }
+
+    /// The longest period of the trains with current that are asked for, and not too old; none without any.
+    fn longest_asked_us(&self, now_us: u64) -> Option<u64> {
+        let rows = now_us <= self.row_us + self.bounds.rows_us;
+        let drives = now_us <= self.drive_us + self.bounds.drives_us;
+        let young = |channel| if channel == self.row_channel { rows } else { drives };
+        let channels = self.channels.iter().enumerate().filter(|(index, _)| young(*index));
+        let asked = channels.filter_map(|(_, channel)| channel.asked.back());
+        let trains = asked.filter(|asked| asked.asks_at(now_us));
+        trains.map(Asked::period_us).max()
     }
 
     /// A phase has ended, as it was to if a way for a current is left.
@@ -304,28 +267,12 @@ impl Patient {
     pub fn ticked(&mut self, now_us: u64) {
         let bounds = self.bounds;
         let tick_us = bounds.tick_us;
-        let asks = |channel: &Channel| {
-            let last = channel.asked.back();
-            last.is_some_and(|last| last.until_us > now_us && last.stimulus.amplitude_ua > 0)
-        };
-        let stimulates = self.armed && self.channels.iter().any(asks);
-        if stimulates {
-            self.session_us += tick_us;
-            self.paused_us = 0;
-        } else {
-            self.paused_us += tick_us;
-            if self.paused_us >= bounds.rest_us + tick_us {
-                self.session_us = 0;
-            }
-        }
+        self.session.goes_on &= self.longest_asked_us(now_us).is_some();
         if now_us > self.heard_us + bounds.silence_us + 2 * tick_us {
             self.ends("a silence");
         }
         if now_us > self.reading_us + bounds.readings_us + 2 * tick_us {
             self.ends("old readings");
-        }
-        if self.session_us > bounds.session_us + 2 * tick_us {
-            self.ends("the session");
         }
     }
 
@@ -347,16 +294,18 @@ impl Patient {
                 self.asks(now_us, channel, *stimulus);
             }
         }
+        self.session.goes_on &= self.longest_asked_us(now_us).is_some();
     }
 
     /// A row had its tick.
     pub fn steps(&mut self, now_us: u64, stimulus: Option<Stimulus>) {
         self.row_us = now_us;
         self.asks(now_us, self.row_channel, stimulus);
+        self.session.goes_on &= self.longest_asked_us(now_us).is_some();
     }
 
     fn asks(&mut self, now_us: u64, channel: usize, stimulus: Option<Stimulus>) {
-        let Channel { asked, period_us, .. } = &mut self.channels[channel];
+        let Channel { asked, period_us: period, .. } = &mut self.channels[channel];
         if let Some(last) = asked.back_mut()
             && last.until_us > now_us
         {
@@ -369,17 +318,24 @@ impl Patient {
             asked.pop_front();
         }
         if let Some(stimulus) = stimulus {
-            *period_us = stimulus.period_us().min(*period_us as u32).into();
-            asked.push_back(Asked { stimulus, until_us: FOR_EVER });
+            let new = Asked { stimulus, until_us: FOR_EVER };
+            *period = new.period_us().min(*period);
+            asked.push_back(new);
         }
     }
 
     /// The host has armed.
     pub fn arms(&mut self) {
         self.armed = true;
+        self.session.goes_on = false;
         for channel in &mut self.channels {
             channel.asked.retain(|asked| asked.until_us == FOR_EVER);
         }
+    }
+
+    /// The longest session so far, by its pulses.
+    pub fn longest_session_us(&self) -> u64 {
+        self.session.longest_us
     }
 
     /// Whether it is.
@@ -403,15 +359,14 @@ impl Patient {
                 asked.until_us = asked.until_us.min(now_us);
             }
         }
+        self.session.goes_on = false;
     }
 
     /// Whether a drive asks for current.
     pub fn is_driven(&self) -> bool {
         let driven = |(index, channel): (usize, &Channel)| {
             index != self.row_channel
-                && channel.asked.back().is_some_and(|last| {
-                    last.until_us > self.now_us && last.stimulus.amplitude_ua > 0
-                })
+                && channel.asked.back().is_some_and(|last| last.asks_at(self.now_us))
         };
         self.armed && self.channels.iter().enumerate().any(driven)
     }

@@ -174,6 +174,30 @@ fn stopping_and_arming_again_is_no_way_round_frequency_or_session() {
     }
 }
 
+/// A rest begins where the next pulse would have come: off between two pulses of a slow train is none.
+#[test]
+fn stopping_between_two_pulses_is_no_rest() {
+    let limits = Limits { session_ms: 2_900, rest_ms: 300, stuck_ms: 2_900, ..BOARD };
+    let mut bench = armed(limits, 1000);
+    bench.inject(|_, r, _| *r = one(Stimulus { frequency_tenths_pps: 10, ..stimulus(20_000) }));
+    for tick in 0..20_000 {
+        // Off for 600 of every 1,000 ms, which begin after the pulse.
+        match tick % 1000 {
+            200 => bench.controller.fail(Fault::Stopped),
+            800 => {
+                let _maybe_another = bench.controller.acknowledge(Fault::Stopped);
+                let _session_is_over = bench.controller.arm();
+            }
+            _ => (),
+        }
+        bench.tick();
+    }
+    assert!(bench.put_out.len() > 3, "{} pulses", bench.put_out.len());
+    // 0.4 s of each counts.
+    let last_ms = bench.put_out.last().expect("pulses").at_us / 1000;
+    assert!(last_ms < 9_000, "pulses for {last_ms} ms");
+}
+
 #[test]
 fn a_session_that_is_over_needs_a_rest() {
     let mut bench = Bench::running();
@@ -182,12 +206,12 @@ fn a_session_that_is_over_needs_a_rest() {
     bench.controller.acknowledge(Fault::Session).expect("its name");
     bench.tick();
     let still = Err(NotArmed::StillThere(Fault::Session));
-    // 600 ms without stimulation.
-    for _ in 0..580 {
+    // 600 ms without stimulation, from when the next pulse would have come after 25 ms.
+    for _ in 0..620 {
         assert_eq!(bench.controller.arm(), still);
         bench.tick();
     }
-    bench.flows(30);
+    bench.flows(8);
     assert_eq!(bench.controller.arm(), Ok(()));
     // Half of a rest is none.
     bench.flows(3_000);

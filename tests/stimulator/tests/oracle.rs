@@ -28,7 +28,7 @@ const LIMITS: Limits = Limits {
     charge_nc: 10_000,
     rms_ua: 5_000,
     rise_ua: 2_000,
-    session_ms: 20_000,
+    session_ms: 3_000,
     rest_ms: 300,
     silence_ms: 100,
     readings_ms: 200,
@@ -46,7 +46,7 @@ const BOUNDS: Bounds = Bounds {
     mean_square: 410 * 410,
     pulses: 80,
     rise: 164,
-    session_us: 20_000_000,
+    session_us: 3_000_000,
     rest_us: 300_000,
     silence_us: 100_000,
     readings_us: 200_000,
@@ -307,6 +307,7 @@ impl World {
             Some(Request::Arm) => self.patient.arms(),
             Some(Request::Rest(_)) => {
                 self.rows.clear();
+                self.patient.steps(now_us, None);
                 (self.first_row, self.next_row) = (0, 0);
             }
             Some(Request::Rows { rows, .. }) => {
@@ -494,6 +495,7 @@ fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
         ticks += 1;
         armed += u64::from(world.patient.is_armed());
     }
+    println!("the longest session: {} us", world.patient.longest_session_us());
     println!(
         "{messages} messages, {} s of time, {} pulses, armed for {} %, {:.1?}; faults that were read: {:?}",
         world.now_us / 1_000_000,
