@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::{env, fs};
 
-/// Of the stimulator's 128 KiB of RAM, what is for its stack; `vm stack` says how much of it is
-/// used.
+/// RAM reserved for the stack, of 128 KiB; `vm stack` computes how much is used.
 const STACK_BYTES: u32 = 40 * 1024;
 
 fn main() {
@@ -32,7 +31,7 @@ fn main() {
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
         if env::var_os("CARGO_FEATURE_BOARD_STM32F405").is_some() {
             println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
-            // The last two sectors are for what outlasts a loss of power.
+            // The last two sectors store the uploads.
             println!("cargo::rustc-link-arg-bins=--defsym=_flash_has_storage=1");
             // Statics are above the stack: where it overflows, there is no memory to write to.
             println!("cargo::rustc-link-arg-bins=--defsym=_stack_bytes={STACK_BYTES}");

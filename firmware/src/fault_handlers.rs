@@ -1,7 +1,6 @@
-//! What the core cannot go on after ends in a reset, and so in neutral, whatever state the stack is
-//! in.
+//! Faults of the core end in a reset, and so in neutral, whatever the state of the stack.
 //!
-//! The stack is below everything else in RAM: what overflows it meets no memory, and the core's
+//! The stack is below everything else in RAM: an overflow leaves RAM, and the core's
 //! fault handler is called with a stack pointer that is of no use. Neither handler uses it.
 #![allow(unsafe_code)]
 
@@ -12,9 +11,9 @@ const AIRCR: u32 = 0xE000_ED0C;
 /// Its key, and the request of a reset.
 const RESET: u32 = 0x05FA_0004;
 
-/// What the core cannot go on after, in whatever it was doing.
+/// A fault of the core.
 ///
-/// Begins a stack of its own, for an interrupt that cannot be masked may still come.
+/// Starts its own stack, because a non-maskable interrupt may still come.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 extern "C" fn HardFault() -> ! {
@@ -38,7 +37,7 @@ extern "C" fn HardFault() -> ! {
     )
 }
 
-/// What nobody has asked for; a crystal that has failed is among it.
+/// Unexpected interrupts, a failed crystal among them.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 extern "C" fn DefaultHandler() -> ! {

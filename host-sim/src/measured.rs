@@ -1,8 +1,6 @@
-//! Real muscle: recordings that no one here made, the model fitted to some of them and held against
-//! the rest.
+//! Published recordings of real muscle: the model is fitted to some and compared with the rest.
 //!
-//! The definitions, what is fitted to what, are frozen in `data/measured`; the recordings are read
-//! from a folder.
+//! The definitions of the fits are in `data/measured`; the recordings are read from a folder.
 
 use crate::fit::{Fit, FitError, Role, Search, Start, Trials, fit};
 use crate::reference::Muscle;
@@ -10,12 +8,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// A set of recordings that has a definition here.
+/// A set of recordings with a built-in definition.
 struct Known {
     folder: &'static str,
     muscle: &'static str,
     trials: &'static str,
-    /// Range of the published mean absolute errors, % of F0, where one is known.
+    /// Range of the published mean absolute errors, % of F0, if known.
     published: Option<[f64; 2]>,
 }
 
@@ -36,25 +34,25 @@ const KNOWN: [Known; 2] = [
     },
 ];
 
-/// What a folder of recordings has to have to be taken without a definition here.
+/// Files of a folder that brings its own definition.
 const MUSCLE_FILE: &str = "muscle.toml";
 const TRIALS_FILE: &str = "trials.toml";
 
-/// A feature of Virtual Muscle that is left out, or none.
+/// Ablation: a feature of Virtual Muscle that is left out, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// The model as it is.
+    /// The full model.
     Nothing,
-    /// Slow types do not yield.
+    /// Without yield.
     Yield,
     /// n_f is nf0 at all lengths.
     ActivationLength,
-    /// The force-velocity relation is at all lengths what it is at L_ce0.
+    /// FV at all lengths as at L_ce0.
     VelocityLength,
 }
 
 impl LeftOut {
-    /// All of them, the model as it is first.
+    /// All versions, the full model first.
     pub const ALL: [Self; 4] =
         [Self::Nothing, Self::Yield, Self::ActivationLength, Self::VelocityLength];
 
@@ -83,7 +81,7 @@ impl LeftOut {
         }
     }
 
-    /// Whether a free parameter is of what is left out.
+    /// Whether a free parameter belongs to the left-out feature.
     fn concerns(self, name: &str) -> bool {
         let keys: &[&str] = match self {
             Self::Nothing => &[],
@@ -95,7 +93,7 @@ impl LeftOut {
     }
 }
 
-/// A row of the scoreboard.
+/// A row of the results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Set of recordings.
@@ -110,20 +108,20 @@ pub struct Row {
     pub rms_pct_f0: f64,
     /// Range of the published mean absolute errors, if there is one.
     pub published_mae_pct_f0: Option<[f64; 2]>,
-    /// What was left out of the model.
+    /// Left-out feature.
     pub left_out: &'static str,
 }
 
-/// A scoreboard.
+/// Results.
 #[derive(Clone, Debug, Default)]
 pub struct Board {
     /// Every trial.
     pub rows: Vec<Row>,
-    /// The fits behind them, by set and what was left out.
+    /// The fits, by set and left-out feature.
     pub fits: Vec<(String, &'static str, Fit)>,
-    /// Sets that are not there, and why.
+    /// Missing sets, with the reason.
     pub skipped: Vec<(String, String)>,
-    /// Models without a feature that cannot be fitted, by set and what was left out, and why.
+    /// Ablations that cannot be fitted, by set and left-out feature, with the reason.
     pub refused: Vec<(String, &'static str, String)>,
 }
 
@@ -136,8 +134,7 @@ struct Found {
     published: Option<[f64; 2]>,
 }
 
-/// Measures the model against every set of recordings in `folder`; `left_out` are the versions of
-/// the model.
+/// Compares the model with every set of recordings in `folder`, for the versions `left_out`.
 pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<Board, FitError> {
     let mut board = Board::default();
     let found = find(folder, &mut board.skipped)?;
@@ -156,7 +153,7 @@ pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<B
                 continue;
             }
         };
-        // Measured, and not what was fitted.
+        // The measured F0, not the fitted one.
         let f0 = set.start.named.muscle.f0();
         let scale = fit.muscle.f0() / f0;
         board.rows.extend(fit.trials.iter().map(|trial| Row {
@@ -173,7 +170,7 @@ pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<B
     Ok(board)
 }
 
-/// The sets in a folder: those that are known here, then others that bring their definition along.
+/// Sets in a folder: the built-in ones, then those with their own definition.
 fn find(folder: &Path, skipped: &mut Vec<(String, String)>) -> Result<Vec<Found>, FitError> {
     let mut found = Vec::new();
     for known in &KNOWN {
@@ -217,8 +214,7 @@ impl Found {
     }
 }
 
-/// Mean of the mean absolute errors of the rows of a set and a role; not a number where there are
-/// none.
+/// Mean of the mean absolute errors of a set and a role; NaN if there are none.
 pub fn mean(board: &Board, dataset: &str, role: Option<Role>, left_out: LeftOut) -> f64 {
     let of_interest = |row: &&Row| {
         row.dataset == dataset

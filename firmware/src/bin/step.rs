@@ -29,7 +29,7 @@ impl Record for Anything {
     }
 }
 
-/// A tick in fixed point, by itself: what it calls is read from the image.
+/// A tick in fixed point as a separate function, whose callees are read from the image.
 #[inline(never)]
 fn step_continuous_fixed(
     muscle: &ContinuousMuscle<Fixed, 2>,
@@ -39,7 +39,7 @@ fn step_continuous_fixed(
     muscle.step(state, input)
 }
 
-/// A tick in fixed point, by itself: what it calls is read from the image.
+/// A tick in fixed point as a separate function, whose callees are read from the image.
 #[inline(never)]
 fn step_fes_fixed(
     muscle: &FesMuscle<Fixed, 2>,
@@ -52,7 +52,7 @@ fn step_fes_fixed(
 /// A mode of motor units, the one with most state.
 type Discrete = NaturalDiscrete<EffectiveLength, 8>;
 
-/// A tick in fixed point, by itself: what it calls is read from the image.
+/// A tick in fixed point as a separate function, whose callees are read from the image.
 #[inline(never)]
 fn step_discrete_fixed(
     muscle: &Muscle<Fixed, Discrete, 2>,

@@ -1,4 +1,4 @@
-//! What outlasts a loss of power: the last two sectors of flash.
+//! Non-volatile storage: the last two sectors of flash.
 
 use super::{CORE_CLOCK, watchdog};
 use crate::board::pac::{DWT, FLASH};
@@ -14,9 +14,8 @@ const STORAGE: u32 = 768 * 1024;
 const STORAGE_BYTES: usize = 256 * 1024;
 const SECTOR: usize = STORAGE_BYTES / 2;
 
-/// The part's flash, from [`STORAGE`] on. Its waits are those of `stm32f4xx-hal` while an operation
-/// is under way: the core, which runs from flash, is held up then in any case, and an operation
-/// that never ends is ended by the watchdog.
+/// The part's flash, from [`STORAGE`] on. It waits in `stm32f4xx-hal` during an operation: the core
+/// stalls then in any case, and the watchdog ends an operation that hangs.
 pub struct Controller(FLASH);
 
 impl Controller {
@@ -87,10 +86,10 @@ impl FlashController for Controller {
     }
 }
 
-/// What is there in an emulator instead of flash.
+/// RAM in place of flash in QEMU.
 pub type EmulatedFlash = RamFlash<8192>;
 
-/// What outlasts a loss of power; in an emulator, only for as long as that runs.
+/// Non-volatile memory; in QEMU, volatile.
 pub enum Memory {
     /// Two sectors.
     Flash(Flash<Controller>),
@@ -98,7 +97,7 @@ pub enum Memory {
     Ram(&'static mut EmulatedFlash),
 }
 
-/// Memory did not do what it was to.
+/// Memory failed.
 #[derive(Debug)]
 pub struct MemoryError;
 

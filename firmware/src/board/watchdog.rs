@@ -37,16 +37,15 @@ impl WatchdogRegisters for Registers {
     }
 }
 
-/// Polls of the registers that last longer than any change: at boot the core runs at 16 MHz, and a
-/// poll takes it four clocks at least.
+/// Polls that outlast any register update: at boot the core runs at 16 MHz, and a poll takes at
+/// least four clocks.
 const POLLS: u32 = MOST_CHANGE_MS * 16_000 / 4;
 
 /// Restarts the chip when ticks stop coming.
 pub struct Watchdog(watchdog::Watchdog<Registers>);
 
 impl Watchdog {
-    /// Running. A part whose watchdog does not is not used: it starts again, in neutral, until it
-    /// does.
+    /// Starts it. If it does not start, the chip resets, in neutral, until it does.
     pub(super) fn start(registers: IWDG, tick_us: u32) -> Self {
         let Ok(watchdog) = watchdog::Watchdog::start(Registers(registers), tick_us, POLLS) else {
             reset()
@@ -57,7 +56,7 @@ impl Watchdog {
     /// A tick has ended in time.
     pub fn feed(&mut self, armed: bool) {
         if self.0.feed(armed).is_err() {
-            // Nothing would stop what hangs.
+            // Without it nothing would end a hang.
             reset()
         }
         PATIENT.store(self.0.is_patient(), Relaxed);

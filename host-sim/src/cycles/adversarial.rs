@@ -1,4 +1,4 @@
-//! Inputs that hurt: what a smooth movement never shows to a tick.
+//! Adversarial inputs, unlike any smooth movement.
 
 use crate::reference::{Input, Mode};
 use crate::scenario::{Scenario, paper_muscle};
@@ -8,7 +8,7 @@ use vm_nostd::Status;
 /// Ticks of the scenario.
 const TICKS: u32 = 6_000;
 
-/// A sequence of numbers 0..1 that looks random and is always the same (xorshift32).
+/// Reproducible pseudo-random numbers 0..1 (xorshift32).
 struct Noise(u32);
 
 impl Noise {
@@ -20,8 +20,8 @@ impl Noise {
     }
 }
 
-/// Clipped, denormal and missing inputs, paths that jump or creep through V = 0 and along the
-/// edges of the domain, and activations around which f_int and f_eff cross at every tick.
+/// Clipped, denormal and missing inputs; paths that jump, creep through V = 0 or follow the edges
+/// of the domain; activations at which f_int and f_eff cross in every tick.
 pub fn scenario() -> Scenario {
     let mut noise = Noise(0x1234_5678);
     let mut path = 0.16;

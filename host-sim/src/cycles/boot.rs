@@ -1,14 +1,14 @@
-//! Calls one function of an image directly, with arguments of our choice, whatever the image would
-//! do by itself: for kernels that no program calls.
+//! Calls one function of an image directly, with given arguments: for kernels that no program
+//! calls.
 //!
-//! QEMU loads the image, a few instructions of ours into the RAM above it, and starts there: they
-//! enable the floating-point unit, set stack and arguments, call the function and end the run.
+//! QEMU loads the image and a small loader into the RAM above it, and starts there: it enables the
+//! floating-point unit, sets stack and arguments, calls the function and ends the run.
 
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// An argument of the function, as the procedure call standard passes it.
+/// An argument, passed per the procedure call standard.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Argument {
     /// A word in the next of r0 to r3.
@@ -62,7 +62,7 @@ fn bytes(digits: &str) -> Option<Vec<u8>> {
     pairs.map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()).collect()
 }
 
-/// Why a function cannot be called directly.
+/// Why a function could not be called directly.
 #[derive(Debug, thiserror::Error)]
 pub enum BootError {
     /// More arguments than registers.
@@ -71,7 +71,7 @@ pub enum BootError {
     /// Buffers that do not fit.
     #[error("buffers of {0} bytes: there is room for {BUFFERS}")]
     Buffers(usize),
-    /// The image is where we would be.
+    /// The image occupies the loader's RAM.
     #[error(
         "the image uses {0:#010x}, and a direct call needs the RAM from {RESERVED:#010x} to \
          {RAM_END:#010x}"
@@ -82,27 +82,27 @@ pub enum BootError {
     Image {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error.
         problem: String,
     },
-    /// What QEMU is to load could not be written.
+    /// The loader's files could not be written.
     #[error("the loader's files: {0}")]
     Write(#[from] std::io::Error),
 }
 
-/// From here on the RAM is ours: the stack of the call below `STACK`, buffers above it, then code.
+/// Start of the loader's RAM: stack of the call below `STACK`, buffers above it, then code.
 const RESERVED: u32 = 0x2000_C000;
 const STACK: u32 = 0x2001_0000;
 const CODE: u32 = 0x2001_F000;
 const RAM_END: u32 = 0x2002_0000;
-/// Room for buffers, bytes.
+/// Size of the buffers, bytes.
 const BUFFERS: usize = (CODE - STACK) as usize;
 /// Coprocessor Access Control Register, of which bits 20 to 23 enable the floating-point unit.
 const CPACR: u32 = 0xE000_ED88;
-/// The reason that semihosting takes for a program's regular end.
+/// Semihosting's reason for a regular exit.
 const APPLICATION_EXIT: u32 = 0x2_0026;
 
-/// The instructions, and two words they load; behind them stand the words of [`table`].
+/// Instructions with two literals, followed by [`table`].
 const STUB: [u16; 32] = [
     0x4C0E, // 00 ldr r4, [pc, #0x38]  the table
     0xCC0E, // 02 ldm r4!, {r1, r2, r3}
@@ -138,8 +138,7 @@ const STUB: [u16; 32] = [
     ((CODE + 0x40) >> 16) as u16, // 3c
 ];
 
-/// What registers are set to: the control register's address, sp, the function, r0 to r3, s0 to
-/// s15.
+/// Register values: address of the control register, sp, the function, r0 to r3, s0 to s15.
 fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), BootError> {
     let (mut words, mut floats, mut buffers) = (Vec::new(), Vec::new(), Vec::new());
     for argument in arguments {
@@ -178,8 +177,7 @@ pub fn code() -> (u32, Vec<u8>) {
     (CODE, STUB.iter().flat_map(|half| half.to_le_bytes()).collect())
 }
 
-/// What makes QEMU call the function at an address of an image, beside loading that; files go to
-/// `folder`.
+/// Arguments that make QEMU call the function at an address of an image; files go to `folder`.
 pub fn loader_arguments(
     image: &Path,
     function: u32,
@@ -207,7 +205,7 @@ pub fn loader_arguments(
     Ok(devices)
 }
 
-/// What start-up code would copy from flash to RAM, and where to.
+/// Initialised data that start-up code would copy to RAM, with its address.
 fn initialised_data(image: &Path) -> Result<Vec<(u32, Vec<u8>)>, BootError> {
     let fail = |problem: String| BootError::Image { path: image.to_owned(), problem };
     let bytes = std::fs::read(image).map_err(|error| fail(error.to_string()))?;

@@ -1,19 +1,19 @@
-//! Which file of the source an instruction comes from. Of the model that says which equation it is
-//! part of, however much the compiler has inlined: each has a file of its own.
+//! Source file of an instruction. In the model each equation has its own file, so that this
+//! attributes inlined code to equations.
 
 use super::image::{Image, ImageError};
 use addr2line::Loader;
 
-/// Where the model's source is.
+/// Folder of the model's source.
 const MODEL: &str = "vm-nostd/src/";
-/// Where its kernels are: what they were inlined into is what they are part of.
+/// Folder of its kernels, which count for the file they are inlined into.
 const KERNELS: &str = "scalar";
 
-/// The files that an image was made from.
+/// Source files of an image.
 pub struct Source(Loader);
 
 impl Source {
-    /// What an image says of its source.
+    /// Debug information of an image.
     pub fn of(image: &Image) -> Result<Self, ImageError> {
         let unread = |reason: Box<dyn std::error::Error>| ImageError::Lines {
             path: image.path.clone(),
@@ -22,9 +22,8 @@ impl Source {
         Loader::new(&image.path).map(Self).map_err(unread)
     }
 
-    /// The file that the code at an address is part of: of the calls that were inlined there, the
-    /// innermost in the model that is no kernel; without one, that they are kernels, or not the
-    /// model.
+    /// File of the code at an address: the innermost inlined call in the model that is no kernel;
+    /// without one, "kernels" or "not of the model".
     pub fn file(&self, address: u32) -> String {
         let mut files = Vec::new();
         if let Ok(mut frames) = self.0.find_frames(address.into()) {
@@ -36,7 +35,7 @@ impl Source {
     }
 }
 
-/// The file that counts, of those from the innermost to the outermost call.
+/// The file that counts, from the innermost to the outermost call.
 fn equation<'a>(files: impl Iterator<Item = &'a str>) -> &'a str {
     let mut found = "not of the model";
     for (_, file) in files.filter_map(|file| file.rsplit_once(MODEL)) {

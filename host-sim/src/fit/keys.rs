@@ -1,9 +1,8 @@
-//! The numbers of a muscle file that can be fitted: where each is in a muscle, and its unit.
+//! Fittable numbers of a muscle file: key, unit, and place in a muscle.
 
 use crate::reference::{Elements, Fatigue, FiberType, Muscle};
 
-/// A number of a muscle file: its key, the file's units per SI unit, and where it is; nowhere in a
-/// part that has no sag or yield.
+/// A number of a muscle file: key, file units per SI unit, and accessor; none without sag or yield.
 type Number<Part> = (&'static str, f64, fn(&mut Part) -> Option<&mut f64>);
 
 const MUSCLE: &[Number<Muscle>] = &[
@@ -63,28 +62,28 @@ const FIBER: &[Number<FiberType>] = &[
     ("TY_ms", 1e3, |t| t.yielding.as_mut().map(|y| &mut y.TY)),
 ];
 
-/// F0 of a muscle; its mass follows.
+/// F0 of a muscle; its mass follows from it.
 pub const FORCE: &str = "max_isometric_force_n";
 /// One factor on Tf1 to Tf4 of all types.
 pub const EXCITATION: &str = "excitation_time_factor";
 
-/// What that factor multiplies, of every type.
+/// Time constants that the factor multiplies, of every type.
 pub const EXCITATION_TIMES: &[&str] = &["Tf1_ms", "Tf2_ms", "Tf3_ms", "Tf4_ms"];
 
-/// What a parameter is of a muscle.
+/// Place of a parameter in a muscle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Key {
-    /// [`FORCE`].
+    /// F0, see [`FORCE`].
     Force,
-    /// [`EXCITATION`].
+    /// The factor [`EXCITATION`].
     ExcitationTimes,
     /// Share of the type of this index; the others keep their proportions.
     Fraction(usize),
     /// A number of the muscle.
     Muscle(usize),
-    /// `elements.`: one of the shared coefficients.
+    /// `elements.`: a shared coefficient.
     Element(usize),
-    /// `fatigue.`.
+    /// `fatigue.`: a parameter of fatigue.
     Fatigue(usize),
     /// `fiber[i].`: a coefficient of one type.
     Fiber(usize, usize),
@@ -120,7 +119,7 @@ impl Key {
         find(MUSCLE, name).map(Self::Muscle)
     }
 
-    /// The number in the file's unit; none where the muscle has no such part.
+    /// The number in the file's unit; none if the muscle has no such part.
     pub fn value(&self, muscle: &Muscle) -> Option<f64> {
         match self {
             Self::Force => Some(muscle.f0()),
@@ -134,7 +133,7 @@ impl Key {
         }
     }
 
-    /// Puts a number, in the file's unit, in its place.
+    /// Sets a number given in the file's unit.
     pub fn set(&self, muscle: &mut Muscle, value: f64) {
         match self {
             Self::Force => set_force(muscle, value),
@@ -178,7 +177,7 @@ impl Key {
     }
 }
 
-/// Gives a muscle the mass that makes its F0.
+/// Sets the mass of a muscle from its F0.
 pub fn set_force(muscle: &mut Muscle, force: f64) {
     muscle.mass *= force / muscle.f0();
 }
@@ -224,7 +223,7 @@ mod tests {
             }
             seen += 1;
         }
-        // All but sag, which the first type has not.
+        // All but sag, which the first type does not have.
         assert_eq!(seen, names().split(", ").count() - 3);
     }
 

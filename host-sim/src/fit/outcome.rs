@@ -1,5 +1,4 @@
-//! A fit from the files to what is found: parameters, what is known of them, and every trial beside
-//! the model.
+//! A fit from files to results: parameters with their uncertainty, and every trial with the model.
 
 use super::FitError;
 use super::problem::Problem;
@@ -13,12 +12,12 @@ use crate::reference::Muscle;
 use rayon::prelude::*;
 use vm_nostd::Status;
 
-/// A trial beside the model.
+/// A trial and the model's force.
 #[derive(Clone, Debug)]
 pub struct TrialFit {
     /// Its name.
     pub name: String,
-    /// What it is for.
+    /// Role: fit or predict.
     pub role: Role,
     /// Times of the readings, s.
     pub times: Vec<f64>,
@@ -32,7 +31,7 @@ pub struct TrialFit {
     pub rms_pct_f0: f64,
     /// Mean error, % of F0.
     pub bias_pct_f0: f64,
-    /// What the model saturated on the way.
+    /// Flags of the model.
     pub status: Status,
 }
 
@@ -45,7 +44,7 @@ pub struct Confirmed {
     pub difference: (f64, f64),
 }
 
-/// What a fit found.
+/// Result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The muscle.
@@ -64,11 +63,11 @@ pub struct Fit {
     pub trials: Vec<TrialFit>,
     /// The same muscle in the other arithmetics.
     pub confirmed: Vec<Confirmed>,
-    /// How the search went: starts, and how many of them ended at the best.
+    /// Number of starts, and of those that ended at the best solution.
     pub starts: (usize, usize),
 }
 
-/// Fits a muscle to trials. `keep_force` keeps F0 where it is not free, else mass is kept.
+/// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass.
 pub fn fit(
     start: &NamedMuscle,
     keep_force: bool,
@@ -156,7 +155,7 @@ pub fn fit(
 }
 
 impl TrialFit {
-    /// What the model saturated, for a table.
+    /// Flags of the model, for a table.
     pub fn status_names(&self) -> String {
         engine::status_names(self.status)
     }

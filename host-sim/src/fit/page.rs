@@ -4,10 +4,10 @@ use super::outcome::{Fit, TrialFit};
 use crate::chart::{Chart, Line, Panel};
 use askama::Template;
 
-/// Why there is no page.
+/// Why the page could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// The page could not be put together.
+    /// The template failed.
     #[error(transparent)]
     Page(#[from] askama::Error),
 }
@@ -29,7 +29,7 @@ struct Page<'a> {
     plots: Vec<String>,
 }
 
-/// The page; `origin` says what was fitted to what.
+/// The page; `origin` names muscle and recordings.
 pub fn page(fit: &Fit, origin: &str) -> Result<String, PageError> {
     let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.5e}"));
     let page = Page {

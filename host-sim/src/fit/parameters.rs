@@ -1,11 +1,11 @@
-//! Free parameters: what each is of, where it may be, and what is believed of it beforehand.
+//! Free parameters: place, bounds and prior.
 
 use super::keys::{self, Key};
 use crate::link;
 use crate::reference::Muscle;
 use serde::Deserialize;
 
-/// What a parameter is a number of.
+/// Place of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// The muscle.
@@ -16,7 +16,7 @@ pub enum Place {
     Offset,
 }
 
-/// What is believed of a parameter before the recordings: a mean and a standard deviation.
+/// Prior of a parameter: mean and standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
@@ -31,22 +31,22 @@ pub struct Prior {
 pub struct Parameter {
     /// Name, of a key of the muscle file or of an offset.
     pub name: String,
-    /// What it is of.
+    /// Place.
     pub place: Place,
-    /// Where the search starts.
+    /// Start of the search.
     pub start: f64,
-    /// Least and greatest.
+    /// Bounds.
     pub bounds: (f64, f64),
-    /// What is believed of it.
+    /// Prior, if any.
     pub prior: Option<Prior>,
 }
 
-/// How far from the start other starts are drawn, as a factor, where no bounds are nearer.
+/// Factor around the start within which other starts are drawn, unless bounds are nearer.
 const DRAWN: f64 = 3.0;
 
 impl Parameter {
-    /// Where starts are drawn from, and against which determination is judged: the bounds, but no
-    /// further than a factor of three from the start.
+    /// Range of starts, against which determination is judged: the bounds, within a factor of three
+    /// of the start.
     pub fn range(&self) -> (f64, f64) {
         let (least, most) = self.bounds;
         let (a, b) = (self.start / DRAWN, self.start * DRAWN);
@@ -66,15 +66,15 @@ impl Parameter {
         (share / (1.0 - share)).ln()
     }
 
-    /// Whether a value is at one of the bounds, for all that the search can tell.
+    /// Whether a value is at one of the bounds, within the search's tolerance.
     pub fn is_at_bound(&self, value: f64) -> bool {
         let (least, most) = self.bounds;
         (value - least).min(most - value) < 1e-4 * (most - least)
     }
 }
 
-/// A muscle with its parameters in their places; F0 is set last, so that it holds whatever else
-/// changes, and is kept where `keep_force` says so.
+/// A muscle with its parameters set. F0 is set last, and kept with `keep_force`, whatever else
+/// changes.
 pub fn applied(
     start: &Muscle,
     parameters: &[Parameter],
@@ -96,7 +96,7 @@ pub fn applied(
     muscle
 }
 
-/// The values of a key around the muscle's own that the builder admits, all else as it is.
+/// Range of valid values of a key around the muscle's own, with all else unchanged.
 pub fn admitted(muscle: &Muscle, key: &Key) -> Option<(f64, f64)> {
     let start = key.value(muscle)?;
     let valid = |value: f64| {

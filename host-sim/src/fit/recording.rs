@@ -23,7 +23,7 @@ impl Column {
     }
 }
 
-/// Where a recording is.
+/// Source of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// The file.
@@ -47,13 +47,13 @@ pub struct Recording {
     column: String,
 }
 
-/// So many equal readings at the greatest force are a channel at its limit.
+/// Equal readings at the greatest force that count as saturation.
 const SATURATED: usize = 5;
-/// Fewer readings than this tell nothing of a trial.
+/// Least number of readings of a trial.
 const FEWEST: usize = 8;
 
 impl Recording {
-    /// Reads a recording; what is wrong with it is named by file, line and column.
+    /// Reads a recording; errors name file, line and column.
     pub fn read(source: &Source) -> Result<Self, TraceError> {
         let path = &source.path;
         let bytes = std::fs::read(path)
@@ -108,8 +108,7 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Refuses what cannot be the force of a muscle: too few readings, always the same, or cut off
-    /// at the top.
+    /// Refuses implausible forces: too few readings, constant, or saturated.
     pub fn check_force(&self) -> Result<(), TraceError> {
         if self.rows.len() < FEWEST {
             let problem = format!("{} readings in the window: at least {FEWEST}", self.rows.len());

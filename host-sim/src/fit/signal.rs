@@ -1,12 +1,12 @@
-//! A signal of a trial: constant, in steps, or recorded; scaled, with an offset that may be a free
-//! parameter.
+//! A signal of a trial: constant, steps or a recording, with a scale and an offset that may be
+//! free.
 
 use super::FitError;
 use super::recording::{Column, Recording, Source};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// A signal as the list of trials gives it.
+/// A signal in the list of trials.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SignalTable {
@@ -47,17 +47,17 @@ impl Default for OffsetKey {
     }
 }
 
-/// What is added to a signal.
+/// Offset of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Offset {
-    /// Always so much.
+    /// A constant.
     Fixed(f64),
     /// The value of the free parameter of this index.
     Free(usize),
 }
 
 impl Offset {
-    /// So much, with these values of the free parameters.
+    /// Its value for given free parameters.
     pub fn value(self, values: &[f64]) -> f64 {
         match self {
             Self::Fixed(offset) => offset,
@@ -83,13 +83,13 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// A signal that never changes.
+    /// A constant signal.
     pub fn constant(value: f64) -> Self {
         Self { shape: Shape::Constant(value), scale: 1.0, offset: Offset::Fixed(0.0) }
     }
 
-    /// Reads a signal, its file in `folder`; `free` are the names of the offsets that may be named,
-    /// `refuse` says what is wrong with a key of it.
+    /// Reads a signal with its file in `folder`. `free` are the names of free offsets; `refuse`
+    /// makes an error of a key.
     pub fn read(
         table: &SignalTable,
         folder: &Path,
@@ -131,7 +131,7 @@ impl Signal {
         Ok(Self { shape, scale: table.scale, offset })
     }
 
-    /// The recording that it is, if it is one.
+    /// Its recording, if it is one.
     pub fn recording(&self) -> Option<&Recording> {
         match &self.shape {
             Shape::Recorded(recording) => Some(recording),
@@ -163,14 +163,14 @@ impl Signal {
         Self { scale: self.scale * factor, ..self }
     }
 
-    /// Gives its free parameter the number that `places` has for it.
+    /// Replaces the index of its free parameter according to `places`.
     pub fn renumber(&mut self, places: &[usize]) {
         if let Offset::Free(index) = &mut self.offset {
             *index = places[*index];
         }
     }
 
-    /// The free parameter that is its offset.
+    /// Its free offset, if any.
     pub fn free(&self) -> Option<usize> {
         match self.offset {
             Offset::Free(index) => Some(index),

@@ -1,5 +1,4 @@
-//! The muscle that a fit starts from: resolved, and as a table of its file to put fitted numbers
-//! into.
+//! Start of a fit: the muscle, and its file as a table that takes the fitted numbers.
 
 use super::keys::FORCE;
 use crate::coefficients;
@@ -15,7 +14,7 @@ pub struct Start {
     pub named: NamedMuscle,
     /// Its file, fibre types in order of rank as in the muscle.
     pub table: Table,
-    /// Its file gives F0 and not mass, so F0 is what stays.
+    /// Its file gives F0 instead of mass, so F0 is kept.
     pub keep_force: bool,
 }
 

@@ -1,19 +1,18 @@
-//! What the recordings tell of the parameters: linear least squares about the solution.
+//! Uncertainty of the parameters: linear least squares at the solution.
 //!
 //! With J the derivatives of the residuals and s² their variance, the covariance of the parameters
-//! is (JᵀJ/s² + P)⁻¹, P being the precision of what is believed beforehand. Residuals of a model
-//! that is not quite the muscle go together from reading to reading: s² is multiplied by (1 + r)/(1
-//! - r) of their correlation r with the one before, which is the variance of a mean of such a
-//! series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
+//! is (JᵀJ/s² + P)⁻¹ with the precision P of the priors. Residuals of an imperfect model are
+//! autocorrelated: s² is multiplied by (1 + r)/(1 - r) with their lag-1 autocorrelation r, the
+//! variance of the mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
 
 use super::parameters::Parameter;
 use nalgebra::DMatrix;
 
 /// Half of a 95 % interval, in standard errors.
 const NORMAL_95: f64 = 1.96;
-/// Correlation from which on two parameters are said to trade off.
+/// Correlation above which two parameters trade off.
 const TRADE_OFF: f64 = 0.95;
-/// A standard error of so much of the prior's spread: the recordings said nothing.
+/// Ratio of standard error to the prior's spread above which the recordings gave no information.
 const AT_PRIOR: f64 = 0.9;
 
 /// A fitted parameter.
@@ -32,7 +31,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// What has to be said of it, if anything.
+    /// Remark, if any.
     pub fn note(&self) -> &'static str {
         match self {
             Self { at_bound: true, .. } => "at its bound",
@@ -56,10 +55,10 @@ pub struct Pair {
     pub correlation: f64,
 }
 
-/// What is known of a solution.
+/// Statistics of a solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
-    /// One of each parameter.
+    /// Estimate of each parameter.
     pub estimates: Vec<Estimate>,
     /// Pairs that trade off.
     pub pairs: Vec<Pair>,
@@ -80,7 +79,7 @@ pub fn statistics(
     let count: usize = series.iter().map(Vec::len).sum();
     let squares: f64 = series.iter().flatten().map(|r| r * r).sum();
     let freedom = count.saturating_sub(parameters.len()).max(1) as f64;
-    // Not less than rounding, which a perfect fit is left with.
+    // At least rounding, which remains of a perfect fit.
     let variance = (squares / freedom).max(1e-12) * inflation(series);
     let at_bound: Vec<bool> =
         parameters.iter().zip(values).map(|(p, &value)| p.is_at_bound(value)).collect();
@@ -104,7 +103,7 @@ pub fn statistics(
         let place = free.iter().position(|&free| free == index);
         let error = place.map(|place| together[(place, place)].sqrt() * range(index));
         let spread = parameter.prior.map(|prior| prior.spread);
-        // An interval as wide as all values that come into question tells nothing.
+        // An interval as wide as the range of starts: undetermined.
         let wide = error.is_some_and(|error| 2.0 * NORMAL_95 * error >= range(index));
         if spread.is_none() && wide {
             undetermined.push(parameter.name.clone());
@@ -132,7 +131,7 @@ pub fn statistics(
     Statistics { estimates, pairs, undetermined, noise_ratio }
 }
 
-/// By how much the variance of a series grows because its residuals go together.
+/// Inflation of the variance of a series by autocorrelation.
 fn inflation(series: &[Vec<f64>]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
     for residuals in series {
@@ -143,8 +142,7 @@ fn inflation(series: &[Vec<f64>]) -> f64 {
     (1.0 + correlation) / (1.0 - correlation)
 }
 
-/// The inverse of an information matrix; where there is no information, there is next to infinite
-/// variance.
+/// Inverse of an information matrix; a direction without information gets a huge variance.
 fn covariance(information: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = information.clone().symmetric_eigen();
     let greatest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
@@ -190,7 +188,7 @@ mod tests {
 
     #[test]
     fn what_the_recordings_do_not_tell_is_named_or_left_at_its_prior() {
-        // Only a + b is in the recordings.
+        // The recordings determine only a + b.
         let jacobian = DMatrix::from_element(100, 2, 10.0);
         let residuals: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let series = [residuals];

@@ -1,4 +1,4 @@
-//! One case: a muscle, what it is made to do, and how far every arithmetic is off.
+//! A case: muscle, inputs, and the error of every arithmetic.
 
 use super::space::KEYS;
 use crate::engine::{self, Arithmetic};
@@ -12,17 +12,17 @@ use std::fmt::Write;
 use std::path::Path;
 use vm_nostd::Status;
 
-/// How long a case lasts, s.
+/// Duration of a case, s.
 const DURATION: f64 = 1.0;
-/// The path starts to swing within this, s.
+/// Fade-in of the path's oscillation, s.
 const START: f64 = 0.3;
 
 /// The values of all keys, and a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// How the muscle is recruited.
+    /// Recruitment mode.
     pub mode: Mode,
-    /// In the order of the keys.
+    /// Values, in the order of the keys.
     pub values: [f64; KEYS.len()],
 }
 
@@ -56,13 +56,13 @@ impl Case {
         )
     }
 
-    /// The muscle; its refusal if it cannot be.
+    /// The muscle, or its refusal.
     pub fn muscle(&self) -> Result<Muscle, String> {
         let named = muscle_file::parse(&self.muscle_file(), Path::new("muscle"));
         Ok(named.map_err(|error| error.to_string())?.muscle)
     }
 
-    /// What it is made to do.
+    /// Inputs.
     pub fn trace(&self) -> InputTrace {
         let [from, to, hz] =
             ["activation_from", "activation_to", "activation_hz"].map(|name| self.value(name));
@@ -72,7 +72,7 @@ impl Case {
         let middle = tendon * 1e-2 + self.value("path_l0") * fascicle;
         let swing = speed / (TAU * path_hz) * fascicle;
         let time_step = self.value("tick_ms") * 1e-3;
-        // The path ends where the muscle's domain does.
+        // The path is limited to the muscle's domain.
         let end = self.muscle().map_or(longest * 1e-2, |muscle| link::path_domain(&muscle).1);
         let input = |tick: usize| {
             let time = tick as f64 * time_step;
@@ -89,7 +89,7 @@ impl Case {
         InputTrace { start: 0.0, time_step, inputs: (0..=ticks).map(input).collect() }
     }
 
-    /// What it is made to do, as a file that `vm run` takes.
+    /// Inputs, as a file for `vm run`.
     pub fn input_file(&self) -> String {
         let trace = self.trace();
         let mut text = "t_s,activation,path_length_m,stim_hz\n".to_owned();
@@ -102,8 +102,7 @@ impl Case {
         text
     }
 
-    /// Error of every arithmetic against the reference, and what it flagged; why, where there is
-    /// none.
+    /// Error and flags of every arithmetic against the reference, or the reason why there is none.
     pub fn errors(&self, arithmetics: &[Arithmetic]) -> Result<Vec<Measured>, String> {
         let (muscle, trace) = (self.muscle()?, self.trace());
         let run = |arithmetic| {
@@ -111,7 +110,7 @@ impl Case {
                 .map_err(|error| format!("{}: {error}", arithmetic.name()))
         };
         let computed: Vec<_> = arithmetics.iter().map(|&arithmetic| run(arithmetic)).collect();
-        // It costs most: not where there is nothing to compare with it.
+        // The reference is the slowest: skipped if there is nothing to compare.
         if let Some(Err(refusal)) = computed.iter().find(|_| computed.iter().all(Result::is_err)) {
             return Err(refusal.clone());
         }
@@ -125,5 +124,5 @@ impl Case {
     }
 }
 
-/// What came of an arithmetic: its error and its flags, or why it refused.
+/// Result of an arithmetic: error and flags, or its refusal.
 pub type Measured = Result<(ForceError, Status), String>;
