@@ -49,10 +49,10 @@ enum Command {
     Golden(GoldenArgs),
     /// Estimate cycles per tick on a Cortex-M4F from the instructions that QEMU executes.
     Cycles(cycles::CyclesArgs),
-    /// Compute the deepest stack of the stimulator's tasks, interrupts and boot from its image, and what of its memory
-    /// is left.
+    /// Compute the stimulator's deepest stack and free memory from its image.
     Stack(stack::StackArgs),
-    /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the host's.
+    /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the
+    /// host's.
     Hil(hil::HilArgs),
     /// Simulate a planar two-joint arm with six muscles at constant activations.
     Arm(arm::ArmArgs),
@@ -69,7 +69,7 @@ enum Command {
     Measured(measured::MeasuredArgs),
     /// List the human muscles that `--muscle` takes by name, with their assumptions.
     Muscles,
-    /// Compare the READMEs' measured tables with what is measured.
+    /// Compare the generated tables and the picture of the documentation with what is measured.
     Readme(ReadmeArgs),
 }
 
@@ -84,7 +84,7 @@ struct GoldenArgs {
     /// Replace the golden bits by those of this build.
     #[arg(long, requires = "reason")]
     bless: bool,
-    /// Why the bits had to change.
+    /// Reason for the change.
     #[arg(long, requires = "bless")]
     reason: Option<String>,
 }
@@ -111,7 +111,7 @@ struct ReportArgs {
 
 #[derive(Debug, Args)]
 struct ReadmeArgs {
-    /// Write what is measured.
+    /// Write the tables and the picture.
     #[arg(long)]
     write: bool,
 }
@@ -122,7 +122,7 @@ enum ModeName {
     Continuous,
     /// Intramuscular FES.
     Fes,
-    /// Natural discrete recruitment, motor unit by motor unit; the muscle file names `units`.
+    /// Natural discrete recruitment of motor units; the muscle file gives `units`.
     Discrete,
     /// The same with an effective length of each unit (VM 3.x).
     DiscreteLeff,
@@ -139,7 +139,7 @@ impl From<ModeName> for Mode {
     }
 }
 
-/// What the process exits with when its input is refused.
+/// Exit code when input is refused.
 const REFUSED: u8 = 2;
 
 /// Runs the command line: 0 if all is well, 1 if `verify` found a failure, 2 if the input was
@@ -173,17 +173,17 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Says something on standard error, if anybody listens.
+/// Prints a message on standard error, ignoring errors.
 fn complain(message: &str) {
     let _nobody_listens = writeln!(std::io::stderr(), "vm: {message}");
 }
 
-/// Prints on standard output: an error if that is full, and nothing if its reader has gone.
+/// Prints on standard output; an error if that fails, except for a closed pipe.
 fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
     unless_broken(writeln!(std::io::stdout(), "{text}"))
 }
 
-/// Refuses a file whose name ends as another format's do; a name without an ending is taken.
+/// Refuses a file name with the ending of another format; a name without an ending is accepted.
 fn check_ending(
     option: &str,
     path: &Path,
@@ -209,7 +209,7 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
         complain(difference);
     }
     if differences.is_empty() {
-        print(&"all bits are the golden ones")?;
+        print(&"all bits are golden")?;
     }
     Ok(differences.is_empty())
 }

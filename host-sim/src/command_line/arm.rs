@@ -46,7 +46,7 @@ pub struct ArmArgs {
     output: Option<PathBuf>,
 }
 
-/// Runs the arm and says what became of it.
+/// Runs the arm and prints the outcome.
 pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
     let arm = Arm::built_in();
     let drive = Drive {
@@ -98,7 +98,7 @@ pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
         match outcome.swings.map(|swings| swings.settle()) {
             Some(true) => "settles",
             Some(false) => "does not settle",
-            None => "too short a run to be judged: 3 s",
+            None => "too short to be judged (3 s)",
         },
         outcome.period.map_or(String::new(), |period| format!(", period {period:.2} s")),
         if outcome.out_of_range { "; a joint was beyond its range" } else { "" },

@@ -103,7 +103,7 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The last part of a path: where it is on this machine is nobody's business.
+/// File name without the folder, which would reveal details of the machine.
 fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -11,23 +11,23 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct MeasuredArgs {
-    /// The folder of the recordings: one folder in it per set.
+    /// Folder of the recordings, with one folder per set.
     #[arg(long)]
     data: PathBuf,
     /// Print the trials as a JSON array instead of tables.
     #[arg(long)]
     json: bool,
-    /// Also fit models that a feature was left out of.
+    /// Also fit models without yield and without length dependence of Af and FV.
     #[arg(long)]
     ablation: bool,
-    /// Be content if a set is missing.
+    /// Skip missing sets without an error.
     #[arg(long)]
     allow_missing: bool,
     #[command(flatten)]
     search: SearchArgs,
 }
 
-/// True if no set of recordings was missing, or none need be there.
+/// True if no set was missing, or missing sets are allowed.
 pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
     let left_out = if args.ablation { &LeftOut::ALL[..] } else { &LeftOut::ALL[..1] };
     let board = measured::measure(&args.data, left_out, &args.search.search())?;

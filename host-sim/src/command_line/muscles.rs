@@ -1,4 +1,4 @@
-//! `vm muscles`: the muscles that have a name, and what is assumed of them.
+//! `vm muscles`: named muscles and their assumptions.
 
 use super::print;
 use crate::muscles::{self, ASSUMPTIONS};

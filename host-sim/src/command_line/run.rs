@@ -32,7 +32,7 @@ pub struct RunArgs {
     arithmetic: Arithmetic,
 }
 
-/// Runs the muscle, writes its outputs, and says on standard error what happened.
+/// Runs the muscle, writes its outputs, and prints a summary on standard error.
 pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
     let muscle = find(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
@@ -44,7 +44,7 @@ pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
         .map(|(row, &(sample, status))| OutputRow {
             time: trace.time(row),
             sample,
-            // The reference clips activation, takes the rest as it comes, and reports nothing.
+            // The reference clips activation only, and raises no flags.
             status: match args.arithmetic {
                 Arithmetic::Reference => "unchecked".to_owned(),
                 _ => engine::status_names(status),
@@ -53,7 +53,7 @@ pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
         .collect();
     trace::write_outputs(&args.output, &rows)?;
     let text = summary(args, &trace, &computed);
-    // Whether anybody listens or not, the outputs are written.
+    // A closed standard error is no failure: the outputs are written.
     let _nobody_listens = writeln!(std::io::stderr(), "{text}");
     Ok(())
 }
@@ -75,7 +75,7 @@ fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
         })
         .collect();
     let flagged = match (args.arithmetic, flagged.is_empty()) {
-        (Arithmetic::Reference, _) => "the reference checks nothing".to_owned(),
+        (Arithmetic::Reference, _) => "no flags: the reference checks nothing".to_owned(),
         (_, true) => "no tick flagged".to_owned(),
         (_, false) => format!("flagged: {}", flagged.join(", ")),
     };
@@ -93,8 +93,7 @@ fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
     )
 }
 
-/// Refuses an output that is one of the inputs, and a trace that does not begin where the muscle
-/// can rest.
+/// Refuses an output that is also an input, and a first row in which the muscle cannot rest.
 pub(super) fn check_run(
     output: &Path,
     input: &Path,
@@ -112,9 +111,9 @@ pub(super) fn check_run(
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
         let problem = format!(
-            "{first}: the muscle's path is between {shortest:.6} m (shorter, the tendon is slack with \
-             the fascicles at the shortest of FV) and {longest:.6} m (longer, no activation keeps \
-             them at lengths that have n_f, or they pull with more than 10 F0), and the first row is where it rests"
+            "{first}: the muscle rests in the first row, so the path must be {shortest:.6} m (a slack \
+             tendon, and fascicles at the pole of FV) to {longest:.6} m (fascicles where n_f = 0.2, \
+             or 10 F0)"
         );
         return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
     }

@@ -9,28 +9,27 @@ use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
 use std::path::PathBuf;
 
-/// `vm stack`: what the stimulator's image takes of its chip's memory.
+/// `vm stack`: memory of the stimulator's image.
 #[derive(Debug, Args)]
 pub struct StackArgs {
-    /// The image; without it, the stimulator is built.
+    /// Image; by default the stimulator is built.
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// What the image does not say of its stack, in TOML; without it, firmware/stack.toml.
+    /// Description of handlers and indirect calls, in TOML; by default firmware/stack.toml.
     #[arg(long, value_name = "FILE")]
     description: Option<PathBuf>,
     /// Print a JSON object instead of tables.
     #[arg(long)]
     json: bool,
-    /// Fail where the firmware's README is not what is computed, as well as where anything is
-    /// unknown or there is not enough memory.
+    /// Also fail if the tables of firmware/README.md differ from what is computed.
     #[arg(long)]
     check: bool,
-    /// Write the tables into the firmware's README.
+    /// Write the tables of firmware/README.md.
     #[arg(long, conflicts_with = "check")]
     write: bool,
 }
 
-/// Runs the command; false if anything is unknown, or there is not enough memory.
+/// Runs the command; false if a depth is unknown or memory is short.
 pub fn run(args: &StackArgs) -> Result<bool, Box<dyn Error>> {
     let elf = match &args.elf {
         Some(elf) => elf.clone(),
@@ -56,17 +55,17 @@ pub fn run(args: &StackArgs) -> Result<bool, Box<dyn Error>> {
         readme::STACK.write(&tables)?;
     }
     if args.check && !readme::STACK.is_current(&tables)? {
-        complain("the firmware's README is not what is computed: cargo vm stack --write");
+        complain("firmware/README.md is not what is computed: cargo vm stack --write");
         passed = false;
     }
     Ok(passed)
 }
 
-/// Each entry with its deepest path, function by function.
+/// Each task with its deepest path.
 fn table(report: &Report) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["what runs", "priority", "stack B", "deepest path"]);
+    table.set_header(["task", "priority", "stack B", "deepest path"]);
     for entry in &report.entries {
         let path = &entry.deepest.path;
         let steps: Vec<String> =

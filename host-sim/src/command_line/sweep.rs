@@ -9,7 +9,7 @@ use comfy_table::{Table, presets};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// `vm sweep`: a grid of muscles and inputs, or a sample at random, every arithmetic against the reference.
+/// `vm sweep`: every arithmetic against the reference, over a grid or a random sample.
 #[derive(Debug, Args)]
 #[command(after_help = keys())]
 pub struct SweepArgs {
@@ -63,7 +63,7 @@ fn keys() -> String {
 impl SweepArgs {
     fn sweep(&self) -> Result<Sweep, Box<dyn Error>> {
         if self.arithmetics.contains(&Arithmetic::Reference) {
-            return Err("--arithmetics reference: it is what the others are compared with".into());
+            return Err("--arithmetics reference: the others are compared with it".into());
         }
         let variations: Vec<Variation> =
             self.vary.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
@@ -81,7 +81,7 @@ impl SweepArgs {
         })
     }
 
-    /// What makes this sweep this one, as arguments.
+    /// Arguments that identify the sweep.
     fn arguments(&self, variations: &[Variation]) -> String {
         let mut arguments = Vec::new();
         if let Some(count) = self.random {

@@ -16,7 +16,7 @@ pub struct VerifyArgs {
     all: bool,
 }
 
-/// Compares, and says what was found; false if a comparison failed.
+/// Compares and prints the results; false if a comparison failed.
 pub fn run(args: &VerifyArgs) -> Result<bool, Box<dyn Error>> {
     let report = verify::verify()?;
     if args.json {
