@@ -10,11 +10,11 @@ pub type Point = (f64, f64);
 /// A line, or points that are marked.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// What it is; lines without a label are not in the legend.
+    /// Label; lines without one are not in the legend.
     pub label: String,
     /// Its points.
     pub points: Vec<Point>,
-    /// Circles in the colour of the line of the same place among the lines, instead of a line.
+    /// Draws circles in the colour of the line at the same index, instead of a line.
     pub marks: bool,
 }
 
@@ -24,7 +24,7 @@ impl Line {
         Self { label: label.into(), points: points.into_iter().collect(), marks: false }
     }
 
-    /// Points that somebody else found, to be compared with a line.
+    /// Published points, compared with a line.
     pub fn marks(label: impl Into<String>, points: impl IntoIterator<Item = Point>) -> Self {
         Self { marks: true, ..Self::new(label, points) }
     }
@@ -33,9 +33,9 @@ impl Line {
 /// One panel of a chart.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What is along the vertical axis, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub y: &'static str,
-    /// What is in it; a single line needs no legend.
+    /// Lines; a single one needs no legend.
     pub lines: Vec<Line>,
     /// An input: half as high.
     pub input: bool,
@@ -56,15 +56,15 @@ impl Panel {
 /// A chart: panels below each other over the same axis.
 #[derive(Clone, Debug)]
 pub struct Chart<'a> {
-    /// Above all.
+    /// Title.
     pub title: &'a str,
-    /// What is along the horizontal axis, with its unit.
+    /// Label of the horizontal axis, with its unit.
     pub x: &'static str,
     /// At least one.
     pub panels: Vec<Panel>,
 }
 
-/// Width of a chart: as narrow as lines of two seconds at 10 Hz can be told apart in, for phones.
+/// Width of a chart: narrow for phones, but wide enough for two seconds at 10 Hz.
 const WIDTH: f64 = 720.0;
 /// Left and right of the panels: labels of the vertical axis, and half of the last one of the
 /// horizontal axis.
@@ -78,14 +78,14 @@ const INPUT: f64 = 105.0;
 const GAP: f64 = 16.0;
 const LEGEND_ROW: f64 = 20.0;
 const X_AXIS: f64 = 50.0;
-/// A letter of the legend takes at most about so much, and the sample before it this much.
+/// Approximate width of a letter of the legend, and width of a sample.
 const LETTER: f64 = 7.0;
 const SAMPLE: f64 = 36.0;
-/// Columns, of at least a pixel, that a line is thinned to: more of it cannot be seen.
+/// Columns of at least a pixel to which a line is thinned.
 const COLUMNS: usize = 600;
-/// Colours that stay apart for most eyes (Okabe and Ito), darkest first.
+/// Colour-blind safe palette (Okabe and Ito), darkest first.
 const COLOURS: [&str; 6] = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00"];
-/// What shows lines that coincide: through the gaps of one, the one below is seen.
+/// Dashes of coinciding lines, through whose gaps the line below is visible.
 const DASHES: [&str; 6] = ["none", "8 5", "3 4", "12 4 3 4", "5 3", "2 5"];
 
 impl Chart<'_> {
@@ -116,7 +116,7 @@ impl Chart<'_> {
     }
 }
 
-/// An axis: what it goes from and to, and where that is drawn.
+/// An axis: its range, and its pixels.
 struct Axis {
     least: f64,
     most: f64,
@@ -133,12 +133,12 @@ impl Axis {
         if least > most {
             return Self { least: 0.0, most: 1.0, start, end };
         }
-        // A constant still needs some height to be drawn in.
+        // A constant needs some height.
         let height = (most - least).max(1e-6 * most.abs()).max(1e-9);
         Self { least, most: least + height, start, end }
     }
 
-    /// The same with a twentieth of it free at both ends.
+    /// The same with a margin of 5 % at both ends.
     fn padded(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
         let Self { least, most, .. } = Self::exact(values, start, end);
         let free = 0.05 * (most - least);
@@ -149,14 +149,14 @@ impl Axis {
         self.start + (value - self.least) / (self.most - self.least) * (self.end - self.start)
     }
 
-    /// About `count` round values, and how many digits behind the point they need.
+    /// About `count` round values, and the decimals they need.
     fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
         let raw = (self.most - self.least) / count;
         let power = 10_f64.powf(raw.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|part| part * power);
         let step = step.into_iter().find(|step| *step >= raw * 0.999).unwrap_or(raw);
         let digits = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
-        // A value that only rounding puts beyond an end is at that end.
+        // Values beyond an end by rounding only count as at that end.
         let first = (self.least / step - 1e-6).ceil() as i64;
         let last = (self.most / step + 1e-6).floor() as i64;
         ((first..=last).map(|index| index as f64 * step).collect(), digits)
@@ -216,8 +216,7 @@ fn draw_panel(
     }
 }
 
-/// The lines of a panel with the number of their colour: marks have that of the line they are
-/// compared with.
+/// The lines of a panel with the index of their colour; marks have the colour of their line.
 fn styled(panel: &Panel) -> impl Iterator<Item = (&Line, usize)> {
     let mut next = [0, 0];
     panel.lines.iter().map(move |line| {
@@ -227,7 +226,7 @@ fn styled(panel: &Panel) -> impl Iterator<Item = (&Line, usize)> {
     })
 }
 
-/// A line; where it is not a finite number, it has a gap.
+/// A line, with gaps at values that are not finite.
 fn polyline(body: &mut String, style: usize, points: impl Iterator<Item = Point>) {
     let mut text = String::new();
     let (colour, dash) = (COLOURS[style], DASHES[style]);
@@ -272,7 +271,7 @@ fn rule(body: &mut String, class: &str, from: Point, to: Point) {
     );
 }
 
-/// The legend of a panel, above it: nothing lies on the data. Returns where the panel begins.
+/// The legend above a panel, outside the data. Returns the top of the panel.
 fn legend(body: &mut String, panel: &Panel, top: f64) -> f64 {
     if panel.lines.len() < 2 {
         return top;
@@ -306,7 +305,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// A line with no more points than can be seen: of each column the least and the greatest, in their order.
+/// A thinned line: the least and greatest point of each column, in order.
 fn thinned(points: &[Point]) -> Vec<Point> {
     if points.len() <= 2 * COLUMNS {
         return points.to_vec();

@@ -1,5 +1,4 @@
-//! The figures of the paper, measured again: SVG with the numbers beside them in CSV, and what the paper
-//! claims against what is found.
+//! The paper's figures, reproduced as SVG with their numbers in CSV, and its claims.
 //!
 //! Source: Song, Raphael, Lan & Loeb, J. Neural Eng. 5 (2008) 175-184, section 3.
 
@@ -24,24 +23,24 @@ use std::path::{Path, PathBuf};
 /// Why figures could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FiguresError {
-    /// A run stopped.
+    /// A run failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The arm stopped.
+    /// The arm failed.
     #[error(transparent)]
     Arm(#[from] ArmError),
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] TraceError),
-    /// The folder could not be made.
+    /// The folder could not be created.
     #[error("{}: {source}", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A table could not be put together.
+    /// A table could not be serialised.
     #[error(transparent)]
     Table(#[from] csv::Error),
 }
@@ -73,7 +72,7 @@ const TIME_STEP: f64 = 1e-3;
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     files: Vec<(&'static str, Vec<u8>)>,
-    /// What the paper claims, and what is found.
+    /// The paper's claims.
     pub claims: Vec<Claim>,
 }
 
@@ -91,7 +90,7 @@ impl Figures {
         Ok(figures)
     }
 
-    /// Writes all files into a folder, which is made if it is not there.
+    /// Writes all files into a folder, which is created if missing.
     pub fn write(&self, folder: &Path) -> Result<(), FiguresError> {
         std::fs::create_dir_all(folder)
             .map_err(|source| FiguresError::Folder { path: folder.to_owned(), source })?;
@@ -120,7 +119,7 @@ impl Figures {
     }
 }
 
-/// Makes all figures in a folder, and returns what became of the paper's claims.
+/// Writes all figures to a folder and returns the paper's claims.
 pub fn make(folder: &Path, arithmetic: Arithmetic) -> Result<Vec<Claim>, FiguresError> {
     let figures = Figures::draw(arithmetic)?;
     figures.write(folder)?;

@@ -1,12 +1,11 @@
-//! Progress of what takes long: a label, a bar and the time left, on standard error where that is a
-//! terminal.
+//! Progress bars: label, bar and time left, on standard error if that is a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Label, bar, count and time left.
 const TEMPLATE: &str = "{msg} [{bar:30}] {pos}/{len}, {eta} left";
 
-/// A bar for `count` steps of what `label` says.
+/// A bar of `count` steps with a label.
 pub(crate) fn bar(label: &'static str, count: usize) -> ProgressBar {
     let style = ProgressStyle::with_template(TEMPLATE).expect("a built-in template");
     ProgressBar::new(count as u64).with_style(style.progress_chars("=> ")).with_message(label)

@@ -1,4 +1,4 @@
-//! All that is measured, in one HTML file that needs no network.
+//! All measurements in one HTML file that needs no network.
 
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::cycles;
@@ -12,7 +12,7 @@ use crate::verify::{self, Row, Traces};
 use askama::Template;
 use std::path::{Path, PathBuf};
 
-/// Why there is no report.
+/// Why the report could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// A scenario could not be run.
@@ -29,26 +29,26 @@ pub enum ReportError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The budgets could not be read.
     #[error("data/budgets.toml: {0}")]
     Budgets(#[from] toml::de::Error),
-    /// What was measured of cycles cannot be read.
-    #[error("{}: not what cargo vm cycles --json prints: {source}", path.display())]
+    /// The file of cycles could not be parsed.
+    #[error("{}: not the output of cargo vm cycles --json: {source}", path.display())]
     Cycles {
         /// The file.
         path: PathBuf,
-        /// Where, and why.
+        /// The parser's error.
         source: serde_json::Error,
     },
-    /// The page could not be put together.
+    /// The template failed.
     #[error(transparent)]
     Page(#[from] askama::Error),
 }
 
-/// A number to begin with.
+/// A card with a number.
 struct Fact {
     value: String,
     what: String,
@@ -56,7 +56,7 @@ struct Fact {
     good: bool,
 }
 
-/// A row of the table to look at first.
+/// A row of the summary table.
 struct Accuracy<'a> {
     scenario: &'a str,
     mode: &'a str,
@@ -84,7 +84,7 @@ struct Page<'a> {
     differences: Vec<String>,
 }
 
-/// The figures, in the order of the paper, and what they show.
+/// The figures in the paper's order, with their captions.
 const FIGURES: [(&str, &str); 6] = [
     ("arm.svg", "Figure 3: an arm with and without effective length"),
     ("static_force.svg", "Figure 4: steady force"),
@@ -94,7 +94,7 @@ const FIGURES: [(&str, &str); 6] = [
     ("computation.svg", "Figure 7: what motor units cost"),
 ];
 
-/// Measures all there is, and puts it in one page; `cycles` is what `vm cycles --json` printed.
+/// Makes the page; `cycles` is the output of `vm cycles --json`.
 pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
     let cycles = cycles.map_or_else(|| Ok(Vec::new()), read_cycles)?;
     let report = verify::verify()?;
@@ -139,7 +139,7 @@ fn worst<'a>(rows: &'a [Row], arithmetic: &str, ringing: bool) -> Option<&'a Row
     of_interest.max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0))
 }
 
-/// The largest error in an arithmetic, against what is promised of such scenarios.
+/// Largest error in an arithmetic, against the promise for such scenarios.
 fn error_fact(row: &Row, what: &str, f0: f64) -> Fact {
     let key = [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone);
     let (promised, _) = tolerance::promise(&key, f0);
@@ -238,7 +238,7 @@ fn plot(traces: &Traces) -> Plot {
             |(row, value): (usize, f64)| -> Point { (row as f64 * traces.time_step, value) };
         Line::new(name, values.enumerate().map(over_time))
     };
-    // The scheme's own error below, what rounding makes of it on top.
+    // Truncation error below, with rounding on top.
     let errors = traces.computed.iter().rev().map(|(name, forces)| {
         let pairs = forces.iter().zip(&traces.reference);
         let mut errors = pairs.map(|(force, reference)| 100.0 * (force - reference) / traces.f0);

@@ -1,5 +1,5 @@
-//! The proof of accuracy: every scenario in every arithmetic against the reference, and the
-//! reference against the authors' vectors.
+//! Accuracy: every scenario in every arithmetic against the reference, and the reference against
+//! the authors' traces.
 
 use crate::engine::{self, Arithmetic, RunError};
 use crate::metrics::{ForceError, forces};
@@ -12,10 +12,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// The authors' program starts from an estimate of the resting length; its traces count from
-/// here on, s.
+/// The authors' program starts from an estimate of the resting length; its traces are compared from
+/// this time on, s.
 const VECTOR_SETTLED: f64 = 0.1;
-/// An entry may be this much looser than what is measured, and no more.
+/// Largest ratio of a tolerance to the measured error.
 const LOOSEST: f64 = 2.0;
 
 /// One row of the table.
@@ -25,9 +25,9 @@ pub struct Row {
     pub scenario: String,
     /// Recruitment mode.
     pub mode: String,
-    /// What the muscle was computed in.
+    /// Arithmetic.
     pub arithmetic: String,
-    /// What it was compared against: `reference` or `vector`.
+    /// Compared with: `reference` or `vector`.
     pub against: String,
     /// Largest absolute error of the tendon force, % of F0.
     pub max_pct_f0: f64,
@@ -35,30 +35,31 @@ pub struct Row {
     pub rms_pct_f0: f64,
     /// Mean error, % of F0.
     pub bias_pct_f0: f64,
-    /// Largest difference from the same scheme in `f64`, % of F0: what rounding and kernels add.
+    /// Largest difference from the same scheme in `f64`, % of F0: the effect of rounding and
+    /// kernels.
     #[serde(skip)]
     pub arithmetic_pct_f0: Option<f64>,
-    /// What the largest error may be, % of F0.
+    /// Tolerance of the largest error, % of F0.
     pub tolerance_pct_f0: f64,
     /// Time that the run took, s.
     #[serde(skip)]
     pub seconds: f64,
-    /// Whether the row is as it should be.
+    /// Whether the row passes.
     pub pass: bool,
-    /// What is wrong with a row that is not.
+    /// Reason if it does not.
     #[serde(skip)]
     pub problem: String,
-    /// Why the error is what it is.
+    /// Cause of the error.
     #[serde(skip)]
     pub reason: String,
 }
 
-/// What `verify` found.
+/// Result of `verify`.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// One row per comparison.
     pub rows: Vec<Row>,
-    /// Entries of the table of tolerances that no row uses.
+    /// Tolerances that no row uses.
     pub unused: Vec<String>,
     /// The forces that were compared, of the scenarios at 1 ms.
     pub traces: Vec<Traces>,

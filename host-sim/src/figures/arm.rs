@@ -10,9 +10,9 @@ use serde::Serialize;
 
 /// The paper's activations.
 pub const ACTIVATIONS: Activations = Activations { shoulder: 0.9, elbow: 0.4, biarticular: 0.0 };
-/// Where the arm starts, degrees: half way forward, elbow bent at a right angle.
+/// Initial angles, degrees: upper arm half way forward, elbow at a right angle.
 pub const START: [f64; 2] = [45.0, 90.0];
-/// Long enough to tell swings that go on from swings that grow or die out, s.
+/// Duration, long enough to distinguish sustained, growing and decaying oscillations, s.
 pub const DURATION: f64 = 30.0;
 
 const MODES: [(&str, Mode); 3] = [
@@ -33,7 +33,7 @@ struct Row {
     effective_length_elbow_deg: f64,
 }
 
-/// What became of the arm: with continuous recruitment, with discrete, and with effective length.
+/// Outcomes with continuous recruitment, with discrete, and with effective length.
 pub(super) fn make(
     figures: &mut Figures,
     arithmetic: Arithmetic,

@@ -1,4 +1,4 @@
-//! What the paper claims, and what is found.
+//! Claims of the paper, with measured numbers.
 
 use super::computation::{self, Costs};
 use super::sinusoids::{self, Swing};
@@ -8,36 +8,36 @@ use serde::Serialize;
 /// A claim of the paper's section 3.
 #[derive(Clone, Debug, Serialize)]
 pub struct Claim {
-    /// Which figure makes it.
+    /// Figure of the claim.
     pub figure: &'static str,
-    /// What is claimed.
+    /// The claim.
     pub claim: &'static str,
     /// The claimed number.
     pub claimed: &'static str,
-    /// What the number is held to: where the paper has no limit, one of ours.
+    /// Limit of the number; ours if the paper gives none.
     pub limit: String,
-    /// The number that is found.
+    /// Measured number.
     pub measured: String,
     /// Whether it is within the limit.
     pub agrees: bool,
-    /// Where it is not, why.
+    /// Reason if it is not.
     pub why: &'static str,
 }
 
-/// The least and the greatest of some numbers.
+/// Least and greatest of some numbers.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
 }
 
-/// What "close to unity" is held to, for mean force and for the range of force. The paper gives no
-/// number: these are ours, and shown with the claim.
+/// Limits of "close to unity" for mean force and for the range of force: ours, since the paper
+/// gives none, and shown with the claim.
 const MEANS_NEAR_ONE: f64 = 0.05;
 const RANGES_NEAR_ONE: f64 = 0.15;
-/// What "about" so many newtons is held to.
+/// Tolerance of "about", N.
 const ABOUT: f64 = 0.5;
-/// What a peak read from a printed figure is held to, N.
+/// Tolerance of a peak read from a printed figure, N.
 const PEAK: f64 = 2.0;
-/// What effective length may change, % of the peak force.
+/// Limit of the effect of effective length, % of peak force.
 const EFFECTIVE_LENGTH: f64 = 1.0;
 
 /// Continuous over discrete.
@@ -54,7 +54,7 @@ fn ratio(claim: &'static str, ratios: impl Iterator<Item = f64>, near: f64) -> C
     }
 }
 
-/// What effective length changes at the frequency of figure 6.
+/// Effect of effective length at the frequency of figure 6.
 fn effective_length(claim: &'static str, row: &sinusoids::Row, why: &'static str) -> Claim {
     let [most, of_f0, rms] =
         [row.effective_length_pct, row.effective_length_pct_f0, row.effective_length_rms_pct_f0];
@@ -102,7 +102,7 @@ fn swings(outcome: &Outcome) -> String {
     })
 }
 
-/// All claims of the paper that the figures bear on.
+/// All claims that the figures test.
 pub(super) fn judge(
     [continuous, discrete, effective]: &[Outcome; 3],
     first_step: f64,

@@ -1,5 +1,5 @@
-//! Figures 5 and 6: sinusoids of activation (0 to 1) and of path length (14 to 18 cm), 1 to 10 Hz, with
-//! continuous and with discrete recruitment, and with effective length.
+//! Figures 5 and 6: sinusoids of activation (0 to 1) and of path length (14 to 18 cm), 1 to 10 Hz,
+//! with continuous and with discrete recruitment, and with effective length.
 
 use super::{Case, Figures, FiguresError, PATH, TIME_STEP, cases};
 use crate::chart::{Chart, Line, Panel};
@@ -12,20 +12,20 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 
 const FREQUENCIES: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
-/// Before the cycles that count, s.
+/// Settling time before the evaluated cycles, s.
 const SETTLING: f64 = 2.0;
-/// How long those last: whole cycles of every frequency, s.
+/// Duration of those: whole cycles of every frequency, s.
 const COUNTED: f64 = 1.0;
-/// The frequency of the paper's figure 6, whose responses are drawn, Hz.
+/// Frequency of the paper's figure 6, whose responses are drawn, Hz.
 pub(super) const DRAWN: u32 = 3;
 /// Peak forces of the discrete curves that the paper prints in figures 5 and 6, activation and
 /// length (N).
 pub(super) const PRINTED_PEAKS: [f64; 2] = [128.0, 152.0];
-/// Activation while the path swings, and the swing, m.
+/// Activation during sinusoids of length, and their range, m.
 const HELD_ACTIVATION: f64 = 0.5;
 const SWING: f64 = 0.02;
 
-/// What swings.
+/// The sinusoidal input.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Swing {
@@ -48,7 +48,7 @@ impl Swing {
     }
 }
 
-/// What 30 + 30 motor units do to a sinusoid, and the others relative to them.
+/// Response of 30 + 30 motor units to a sinusoid, and the others relative to it.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Row {
     pub(super) swing: Swing,
@@ -57,12 +57,12 @@ pub(super) struct Row {
     pub(super) peak_n: f64,
     /// Mean force of 30 + 30 units, N.
     pub(super) mean_n: f64,
-    /// From the least to the greatest force of 30 + 30 units, N.
+    /// Range of force of 30 + 30 units, N.
     pub(super) range_n: f64,
     /// Continuous over discrete.
     pub(super) mean_ratio: f64,
     pub(super) range_ratio: f64,
-    /// Largest difference that effective length makes, in % of the greatest force.
+    /// Largest effect of effective length, % of peak force.
     pub(super) effective_length_pct: f64,
     /// The same in % of F0.
     pub(super) effective_length_pct_f0: f64,
@@ -70,7 +70,7 @@ pub(super) struct Row {
     pub(super) effective_length_rms_pct_f0: f64,
 }
 
-/// Forces of the cycles that count, N.
+/// Forces of the evaluated cycles, N.
 fn forces(case: &Case, arithmetic: Arithmetic, trace: &InputTrace) -> Result<Vec<f64>, RunError> {
     let rows = engine::run(&case.muscle, case.mode, arithmetic, trace)?;
     let first = rows.len() - (COUNTED / TIME_STEP).round() as usize;

@@ -1,4 +1,4 @@
-//! Figure 4: steady force by activation, full and where recruitment starts.
+//! Figure 4: steady force by activation, over the full range and at the start of recruitment.
 
 use super::{Case, Figures, FiguresError, PATH, TIME_STEP, cases};
 use crate::chart::{Chart, Line, Panel, Point};
@@ -8,12 +8,12 @@ use crate::trace::InputTrace;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// A force is steady after this many seconds, as in the authors' table.
+/// Settling time of a force, as in the authors' table, s.
 const STEADY: f64 = 3.0;
 const STEPS: u32 = 100;
-/// Activation up to which figure 4(b) shows the start.
+/// Largest activation of figure 4(b).
 const ZOOM: f64 = 0.3;
-/// Activation just below and above a recruitment threshold: more than any arithmetic rounds it by.
+/// Distance from a recruitment threshold, above the rounding of any arithmetic.
 const BESIDE: f64 = 1e-6;
 /// No unit is recruited below this activation.
 const LEAST_THRESHOLD: f64 = 0.001;
@@ -90,7 +90,7 @@ fn steps(case: &Case, arithmetic: Arithmetic) -> Result<Vec<Step>, RunError> {
         .collect()
 }
 
-/// The size of the step (N) with which the first of 3 + 3 units is recruited.
+/// Step of force (N) at the recruitment of the first of 3 + 3 units.
 pub(super) fn make(figures: &mut Figures, arithmetic: Arithmetic) -> Result<f64, FiguresError> {
     let cases = cases();
     let rows: Vec<Row> = (0..=STEPS)
@@ -118,7 +118,7 @@ pub(super) fn make(figures: &mut Figures, arithmetic: Arithmetic) -> Result<f64,
             let mut points: Vec<Point> =
                 rows.iter().map(|row| (row.activation, force(row))).collect();
             let of_case = index.checked_sub(1).map_or(&[][..], |index| &steps[index]);
-            // Both at the threshold itself: a step is vertical.
+            // Both at the threshold, so that a step is vertical.
             points.extend(of_case.iter().flat_map(|step| {
                 [(step.threshold - 1e-12, step.below_n), (step.threshold, step.above_n)]
             }));

@@ -1,4 +1,4 @@
-//! What a sweep goes through: a grid of values, or a sample at random.
+//! Space of a sweep: a grid of values or a random sample.
 
 use super::case::Case;
 use crate::engine::mode_name;
@@ -8,20 +8,20 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::fmt;
 use std::str::FromStr;
 
-/// Something that varies.
+/// A varied quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Its name, with its unit.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
-    /// What it is when nothing is said, in a grid: the paper's muscle.
+    /// Default in a grid: the paper's muscle.
     pub nominal: f64,
-    /// Where it is drawn from when nothing is said, at random.
+    /// Default range of random values.
     pub range: (f64, f64),
-    /// What it may be.
+    /// Limits.
     pub limits: (f64, f64),
-    /// Drawn evenly by its logarithm.
+    /// Log-uniform.
     pub logarithmic: bool,
 }
 
@@ -36,7 +36,7 @@ const fn key(
     Key { name, meaning, nominal, range, limits, logarithmic }
 }
 
-/// All that varies: the muscle, then what it is made to do.
+/// All varied quantities: the muscle, then its inputs.
 pub const KEYS: [Key; 14] = [
     key("mass_g", "muscle mass", 97.5, (2.0, 1000.0), (0.01, 30e3), true),
     key("fascicle_length_cm", "L_ce0", 11.0, (2.0, 30.0), (0.5, 100.0), true),
@@ -52,11 +52,11 @@ pub const KEYS: [Key; 14] = [
         false,
     ),
     key("recruitment_saturation", "U_r", 0.8, (0.3, 1.0), (0.01, 1.0), false),
-    // Activation swings between these.
+    // Range of activation.
     key("activation_from", "least activation", 0.2, (0.0, 1.0), (0.0, 1.0), false),
     key("activation_to", "greatest activation", 0.8, (0.0, 1.0), (0.0, 1.0), false),
     key("activation_hz", "frequency of activation", 2.0, (0.0, 10.0), (0.0, 100.0), false),
-    // The path swings about L_se0 and so many L_ce0, at most so fast.
+    // The path oscillates about L_se0 plus this many L_ce0, up to this speed.
     key("path_l0", "mean path length beyond L_se0, L_ce0", 1.0, (0.75, 1.1), (0.4, 2.0), false),
     key("path_l0_per_s", "peak path velocity, L_ce0/s", 1.0, (0.0, 4.0), (0.0, 20.0), false),
     key("path_hz", "frequency of the path", 2.0, (0.5, 8.0), (0.1, 100.0), false),
@@ -64,7 +64,7 @@ pub const KEYS: [Key; 14] = [
     key("tick_ms", "time step", 1.0, (1.0, 1.0), (0.1, 2.0), false),
 ];
 
-/// What a key is given on the command line: `key=value`, `key=from:to` or `key=value,value,...`.
+/// Values of a key on the command line: `key=value`, `key=from:to` or `key=value,value,...`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation {
     /// Index of the key.
@@ -78,32 +78,32 @@ enum Values {
     Listed(Vec<f64>),
 }
 
-/// Why a sweep cannot be.
+/// Why a sweep was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpaceError {
     /// Not `key=...`.
     #[error("\"{0}\": must be key=value, key=from:to or key=value,value,... with a key of {keys}", keys = names())]
     Form(String),
-    /// A value that is none, or that a key cannot have.
+    /// A value that is no number or out of range.
     #[error("{key} = {value}: must be a number from {least} to {most}")]
     Value {
         /// The key.
         key: &'static str,
         /// The refused value, as given.
         value: String,
-        /// The least that is taken.
+        /// Least allowed value.
         least: f64,
-        /// The most that is taken.
+        /// Greatest allowed value.
         most: f64,
     },
-    /// A range that ends before it begins.
+    /// A range whose end is below its start.
     #[error("{key} = {from}:{to}: must go up")]
     Order {
         /// The key.
         key: &'static str,
-        /// Where it begins.
+        /// Start.
         from: f64,
-        /// Where it ends.
+        /// End.
         to: f64,
     },
     /// A key, or a mode, given twice.
@@ -123,7 +123,7 @@ fn names() -> String {
     KEYS.map(|key| key.name).join(", ")
 }
 
-/// The rows of more, of a kilobyte each, would not fit in the memory of a small machine.
+/// Limit of memory: rows are a kilobyte each.
 pub const MOST_CASES: usize = 1_000_000;
 
 impl FromStr for Variation {
@@ -154,7 +154,7 @@ impl FromStr for Variation {
 }
 
 impl fmt::Display for Variation {
-    /// As it is given on the command line, numbers as they are.
+    /// As on the command line, with numbers unchanged.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = KEYS[self.key].name;
         match &self.values {
@@ -171,15 +171,15 @@ impl fmt::Display for Variation {
 #[derive(Clone, Debug)]
 pub struct Space {
     modes: Vec<Mode>,
-    /// Of every key.
+    /// Values of every key.
     values: [Values; KEYS.len()],
-    /// How many are drawn, and the seed; none in a grid.
+    /// Number of random cases and seed; none in a grid.
     random: Option<(usize, u64)>,
     count: usize,
 }
 
 impl Space {
-    /// A grid of the values given, all else as in the paper; or so many cases drawn at random.
+    /// A grid of the given values, all else as in the paper; or random cases.
     pub fn new(
         variations: &[Variation],
         modes: Vec<Mode>,
@@ -218,12 +218,12 @@ impl Space {
         Ok(Self { modes, values, random, count })
     }
 
-    /// How many cases there are.
+    /// Number of cases.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// A case by its number, the same whenever and in whatever order it is asked for.
+    /// A case by its number; it does not depend on the order of calls.
     pub fn case(&self, number: usize) -> Case {
         let mode = self.modes[number % self.modes.len()];
         let mut index = number / self.modes.len();
@@ -236,7 +236,7 @@ impl Space {
         for ((value, of_key), key) in values.iter_mut().zip(&self.values).zip(&KEYS) {
             *value = match (&mut generator, of_key) {
                 (Some(generator), of_key) => {
-                    // 53 bits, 0 up to but not 1.
+                    // 53 bits in [0, 1).
                     let share = (generator.next_u64() >> 11) as f64 * 2_f64.powi(-53);
                     drawn(of_key, share, key.logarithmic)
                 }
