@@ -1,7 +1,7 @@
 //! Test rig: two muscles stepped by one tick.
 
 use vm_nostd::{
-    ContinuousMuscle, FesMuscle, FiberParams, Input, IntramuscularFes, MuscleParams,
+    Class, ContinuousMuscle, FesMuscle, FiberParams, Input, IntramuscularFes, MuscleParams,
     NaturalContinuous, Output, ParameterError, Scalar, State, TimeStep, paper_table_1,
 };
 
@@ -49,6 +49,7 @@ pub const MUSCLE: MuscleParams<TYPES> = MuscleParams {
     tendon_length: 0.02,
     max_path_length: 0.184,
     recruitment_saturation: 0.8,
+    class: Class::Standard,
     elements: paper_table_1::ELEMENTS,
     fibers: [
         FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },

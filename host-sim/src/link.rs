@@ -87,6 +87,7 @@ pub fn params<const N: usize>(muscle: &Muscle) -> vm::MuscleParams<N> {
         tendon_length: muscle.L_se0,
         max_path_length: muscle.L_mt_max,
         recruitment_saturation: muscle.U_r,
+        class: vm::Class::Standard,
         elements: element_params(&muscle.elements),
         fibers: std::array::from_fn(|i| vm::FiberParams {
             fraction: muscle.fibers[i].fraction,

@@ -131,6 +131,14 @@ const VECTORS: &[Vector] = &[
     vector!("discrete_30_length_3hz", Discrete, 30),
     vector!("soleus_gait", Continuous of a muscle file),
     vector!("passive_cyclic", Continuous of a muscle file),
+    vector!("fast_ramps_kinks", Continuous of a muscle file),
+    vector!("fes_variable_trains", Fes of a muscle file),
+    vector!("fes_doublets", Fes of a muscle file),
+    vector!("leff_hand_length_chirp", DiscreteEffectiveLength of a muscle file),
+    vector!("yield_fes_frequency_ramp_cat", Fes of a muscle file),
+    vector!("yield_fes_frequency_ramp_deltoid", Fes of a muscle file),
+    vector!("yield_fes_frequency_every_10ms_cat", Fes of a muscle file),
+    vector!("yield_path_quantised_0_1mm", Continuous of a muscle file),
 ];
 
 /// Path length of the paper's figures, m.

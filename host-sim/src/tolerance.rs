@@ -51,11 +51,21 @@ pub fn promise(key: &Key, f0: f64) -> (f64, Option<f64>) {
         Some((_, "0.5ms" | "0.1ms")) => 0.5,
         _ => 1.0,
     };
-    if rings(scenario) { (1.5 * share, Some(0.1 * share)) } else { (0.1 * share, None) }
+    // The stimulation frequency, and with it Af, jumps by up to the whole of its range.
+    let jumps = ["fes_variable_trains", "fes_doublets"];
+    if rings(scenario) {
+        (1.0 * share, Some(0.1 * share))
+    } else if jumps.iter().any(|name| scenario.starts_with(name)) {
+        (0.2 * share, None)
+    } else {
+        (0.1 * share, None)
+    }
 }
 
 /// Whether the muscle rings on its tendon in a scenario: a slack tendon snaps taut, or the path
 /// jerks.
 pub fn rings(scenario: &str) -> bool {
-    ["passive_length", "velocity_kinks"].iter().any(|name| scenario.starts_with(name))
+    ["passive_length", "velocity_kinks", "fast_ramps_kinks"]
+        .iter()
+        .any(|name| scenario.starts_with(name))
 }

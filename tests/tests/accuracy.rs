@@ -44,12 +44,14 @@ fn the_promises_are_those_of_the_project() {
     };
     assert_eq!(promise("continuous_steps", "f32"), (0.1, None));
     assert_eq!(promise("activation_10hz@0.5ms", "f32"), (0.05, None));
-    assert_eq!(promise("passive_length_3hz", "f32"), (1.5, Some(0.1)));
-    assert_eq!(promise("passive_length_3hz@0.5ms", "f32"), (0.75, Some(0.05)));
-    assert_eq!(promise("velocity_kinks", "fixed"), (1.5, Some(0.1)));
+    assert_eq!(promise("passive_length_3hz", "f32"), (1.0, Some(0.1)));
+    assert_eq!(promise("passive_length_3hz@0.5ms", "f32"), (0.5, Some(0.05)));
+    assert_eq!(promise("velocity_kinks", "fixed"), (1.0, Some(0.1)));
+    assert_eq!(promise("fast_ramps_kinks", "f32"), (1.0, Some(0.1)));
+    assert_eq!(promise("fes_variable_trains", "f32"), (0.2, None));
     assert_eq!(promise("activation_10hz@0.1ms", "f32"), (0.05, None));
     assert_eq!(promise("activation_10hz@2ms", "f32"), (1.0, None));
-    assert_eq!(promise("velocity_kinks@2ms", "f32"), (15.0, Some(1.0)));
+    assert_eq!(promise("velocity_kinks@2ms", "f32"), (10.0, Some(1.0)));
     let newtons = promise("continuous_steps", "reference").0 * 265.909 / 100.0;
     assert!((newtons - 0.005).abs() < 1e-12);
 }

@@ -3,7 +3,6 @@
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
-use crate::recruitment::Course;
 use crate::scalar::Scalar;
 
 /// Coefficients of Af.
@@ -23,10 +22,6 @@ pub struct ActivationParams {
 
 /// The smallest n_f used: below, Af loses its meaning, and at 0 it is undefined.
 const LEAST_EXPONENT: f64 = 0.2;
-
-/// A frequency that rises from 0 as the square of time has changed by four times its value at the
-/// tick's middle; nothing that two lags in a row put out changes faster.
-const STEEPEST: f64 = 4.0;
 
 impl ActivationParams {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
@@ -60,21 +55,16 @@ pub(crate) struct ActivationFrequency<S> {
     /// nf0 - nf1 and nf1.
     exponent: [S; 2],
     scale: S,
-    steepest: S,
 }
 
-summed!([S: Scalar] ActivationFrequency<S> { exponent, scale, steepest });
+summed!([S: Scalar] ActivationFrequency<S> { exponent, scale });
 
 /// Af at one fascicle length, ready for any frequency.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActivationCurve<S> {
     exponent: S,
-    /// dn_f/dL, 1/L_ce0.
-    exponent_slope: S,
     /// 1/(af n_f).
     per_scale: S,
-    /// Largest relative change of frequency in a tick.
-    steepest: S,
 }
 
 impl<S: Scalar> ActivationFrequency<S> {
@@ -85,7 +75,6 @@ impl<S: Scalar> ActivationFrequency<S> {
                 S::from_f64(params.length_dependence),
             ],
             scale: S::from_f64(params.scale),
-            steepest: S::from_f64(STEEPEST),
         }
     }
 
@@ -93,29 +82,17 @@ impl<S: Scalar> ActivationFrequency<S> {
     pub(crate) fn at(&self, reciprocal: S) -> ActivationCurve<S> {
         let [constant, slope] = self.exponent;
         let exponent = constant + slope * reciprocal;
-        ActivationCurve {
-            exponent,
-            exponent_slope: -(slope * reciprocal * reciprocal),
-            per_scale: (self.scale * exponent).reciprocal(),
-            steepest: self.steepest,
-        }
+        ActivationCurve { exponent, per_scale: (self.scale * exponent).reciprocal() }
     }
 }
 
 impl<S: Scalar> ActivationCurve<S> {
-    /// Af for an effective frequency Y S f (f0.5, at least 0), and how much Af changes while
-    /// that frequency changes by `frequency_change` and the fascicle by `length_change` (L_ce0).
+    /// Af for an effective frequency Y S f (f0.5, at least 0).
     #[inline(always)]
-    pub(crate) fn at(&self, frequency: S, frequency_change: S, length_change: S) -> Course<S> {
+    pub(crate) fn at(&self, frequency: S) -> S {
         if frequency <= S::ZERO {
-            return Course::constant(S::ZERO);
+            return S::ZERO;
         }
-        let logarithm = (frequency * self.per_scale).ln();
-        let (value, growth) = (self.exponent * logarithm).weibull();
-        // By ln of the power it is the growth; d ln(power) = n_f dln f + (ln(f/(af n_f)) - 1) dn_f.
-        let relative = frequency_change.ratio(frequency).max(-self.steepest).min(self.steepest);
-        let exponent_change = self.exponent_slope * length_change;
-        let change = self.exponent * relative + (logarithm - S::ONE) * exponent_change;
-        Course { middle: value, change: growth * change }
+        (self.exponent * (frequency * self.per_scale).ln()).weibull().0
     }
 }

@@ -62,12 +62,12 @@ impl core::error::Error for BankFull {}
 /// Up to `CAPACITY` muscles of `N` fibre types each, without a heap.
 ///
 /// ```
-/// use vm_nostd::{Bank, BankedMuscle, FesMuscle, Fixed, Input, MuscleParams, TimeStep};
+/// use vm_nostd::{Bank, BankedMuscle, Class, FesMuscle, Fixed, Input, MuscleParams, TimeStep};
 /// # use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
 /// # use vm_nostd::FiberParams;
 /// # let params = MuscleParams {
 /// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
-/// #     recruitment_saturation: 0.8, elements: ELEMENTS,
+/// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS,
 /// #     fibers: [
 /// #         FiberParams { fraction: 0.6, fiber_type: SLOW },
 /// #         FiberParams { fraction: 0.4, fiber_type: FAST },

@@ -159,6 +159,7 @@ mod tests {
         check("fascicle_length", &|m| m.fascicle_length *= 1.01, all);
         check("tendon_length", &|m| m.tendon_length *= 1.01, all);
         check("max_path_length", &|m| m.max_path_length *= 1.01, all);
+        check("class", &|m| m.class = crate::Class::Fine, all);
         // FES has no thresholds, and only FES has a frequency in pps.
         check("recruitment_saturation", &|m| m.recruitment_saturation = 0.7, &[0, 2, 3]);
         check("tendon.stiffness", &|m| m.elements.tendon.stiffness *= 1.01, all);

@@ -17,6 +17,7 @@
 mod decay;
 
 use crate::checksum::summed;
+use crate::class::{Class, Substeps};
 use crate::domain::MAXIMUM_SPEED;
 use crate::force_velocity::VelocityCurve;
 use crate::muscle::Fiber;
@@ -26,23 +27,18 @@ use crate::scalar::Scalar;
 use crate::scalar::float::{square_root, tangent};
 use crate::tendon::Tendon;
 use crate::time_step::TimeStep;
-use decay::Decay;
+use crate::yielding::{SPREAD, Speed};
 
-/// Longest substep, s: of a tick of 1 ms and more, and of a shorter one, of which half the error is
-/// expected. Where a tick begins the force may jump, and what the fascicles travel until they have
-/// followed goes with the substep.
-const LONGEST_SUBSTEP: f64 = 0.5e-3;
-const LONGEST_FINE_SUBSTEP: f64 = 0.15e-3;
 /// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;
-/// The substeps resolve the ringing of a passive muscle: of angular frequency w, and of amplitude
-/// A in F0 where the path's speed jumps by 1 L_ce0/s, it is w h √A at most. The error of a step
-/// that is second order goes with the square of this.
-const RINGING: f64 = 0.35;
+/// The greatest w h of a substep: beyond, a muscle that rings would turn by more than half a period in
+/// it, and no inertia could be fitted to that.
+const COARSEST_PHASE: f64 = 2.84;
 /// Most of the substeps: only a muscle far from any anatomy asks for more.
 const MOST_SUBSTEPS: u8 = 40;
-/// w h/2 that inertia is fitted for at most: at pi/2 there would be none left.
-const FASTEST_RINGING: f64 = 1.2;
+/// w h/2 that inertia is fitted for at most: at pi/2 there would be none left, and from here on what
+/// little is left makes errors after a jerk grow again.
+const FASTEST_RINGING: f64 = 1.1;
 /// The mechanics count as settled if no balance at a velocity foreseen is worse, F0.
 const SETTLED: f64 = 0.5;
 /// What the filaments resist a change of velocity with counts as no less, F0 s/L_ce0: far below any
@@ -63,6 +59,7 @@ pub(crate) struct Motion<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Advanced<S> {
     pub(crate) motion: Motion<S>,
+    pub(crate) speed: Speed<S>,
     /// No substep began far from its balance.
     pub(crate) settled: bool,
     /// A substep held the velocity at the greatest there is.
@@ -100,12 +97,13 @@ pub(crate) struct Contraction<S: Scalar> {
     /// Ticks per second.
     tick_rate: S::Factor,
     speed: S,
+    /// 1 over the unit of a variance of speeds.
+    per_spread: S,
     settled: S,
     least_steepness: S,
-    decay: Decay<S>,
 }
 
-summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, settled, least_steepness, decay });
+summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, per_spread, settled, least_steepness });
 
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
@@ -153,21 +151,23 @@ fn tendon_stiffness<const N: usize>(params: &MuscleParams<N>) -> f64 {
 /// The largest coefficient of the mechanics of a muscle: its inertia in a substep.
 pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> f64 {
     let mass = moving_mass(params);
-    2.0 * mass * f64::from(substeps(step, mass, tendon_stiffness(params))) / step.seconds()
+    2.0 * mass * f64::from(substeps(params.class, step, mass, tendon_stiffness(params)))
+        / step.seconds()
 }
 
-/// How many substeps a tick has, for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
-fn substeps(step: TimeStep, mass: f64, stiffness: f64) -> u8 {
-    // w h √A <= RINGING in its fourth power, which takes no root: w² = stiffness/mass and
-    // A² = stiffness mass.
+/// How many substeps a tick has in a class, for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
+fn substeps(class: Class, step: TimeStep, mass: f64, stiffness: f64) -> u8 {
+    // In powers which take no root: w² = stiffness/mass and A² = stiffness mass.
     let square = |x: f64| x * x;
-    let wanted = square(stiffness / mass) * stiffness * mass;
-    let coarse = step.seconds() >= COARSE_TICK;
-    let longest = if coarse { LONGEST_SUBSTEP } else { LONGEST_FINE_SUBSTEP };
+    let (frequency, amplitude) = (stiffness / mass, stiffness * mass);
+    let Substeps { longest: (coarse, fine), ringing } = class.substeps();
+    let longest = if step.seconds() >= COARSE_TICK { coarse } else { fine };
     (1..MOST_SUBSTEPS)
         .find(|&count| {
             let substep = step.seconds() / f64::from(count);
-            substep <= longest * (1.0 + 1e-9) && square(square(substep / RINGING)) * wanted <= 1.0
+            substep <= longest * (1.0 + 1e-9)
+                && square(substep / COARSEST_PHASE) * frequency <= 1.0
+                && square(square(substep / ringing) * frequency) * amplitude <= 1.0
         })
         .unwrap_or(MOST_SUBSTEPS)
 }
@@ -176,7 +176,7 @@ impl<S: Scalar> Contraction<S> {
     /// The mechanics of a muscle.
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let (mass, stiffness) = (moving_mass(params), tendon_stiffness(params));
-        let substeps = substeps(step, mass, stiffness);
+        let substeps = substeps(params.class, step, mass, stiffness);
         let seconds = step.seconds() / f64::from(substeps);
         let tendon = &params.elements.tendon;
         Self {
@@ -187,9 +187,9 @@ impl<S: Scalar> Contraction<S> {
             tick: S::factor(step.seconds()),
             tick_rate: S::factor(1.0 / step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
+            per_spread: S::from_f64(1.0 / SPREAD),
             settled: S::from_f64(SETTLED),
             least_steepness: S::from_f64(LEAST_STEEPNESS),
-            decay: Decay::new(),
         }
     }
 
@@ -220,14 +220,36 @@ impl<S: Scalar> Contraction<S> {
         // Time since the tick's middle, in ticks.
         let mut time = -S::HALF;
         let (mut worst, mut fastest) = (S::ZERO, S::ZERO);
+        let (mut mean, mut square) = (S::ZERO, S::ZERO);
         for _ in 0..self.substeps {
-            let (balance, speed) = tick.substep::<R>(&mut motion, time);
-            worst = worst.max(balance);
-            fastest = fastest.max(speed);
+            let substep = tick.substep::<R>(&mut motion, time);
+            worst = worst.max(substep.balance);
+            fastest = fastest.max(substep.speed_at_middle);
+            let share = self.substep.share * substep.mean_speed;
+            mean = mean + share;
+            square = square + share * (self.per_spread * substep.mean_speed);
             time = time + self.substep.share;
         }
-        Advanced { motion, settled: worst <= self.settled, held: fastest >= self.speed }
+        Advanced {
+            motion,
+            speed: Speed {
+                mean,
+                variance: (square - mean * (self.per_spread * mean)).max(S::ZERO),
+            },
+            settled: worst <= self.settled,
+            held: fastest >= self.speed,
+        }
     }
+}
+
+/// What a substep has been like.
+struct Passed<S> {
+    /// How far the forces were from balance at the predicted velocity, F0.
+    balance: S,
+    /// |V| at its middle, L_ce0/s.
+    speed_at_middle: S,
+    /// The magnitude of its mean velocity, L_ce0/s.
+    mean_speed: S,
 }
 
 /// One tick of the mechanics.
@@ -240,10 +262,9 @@ struct Tick<'a, S: Scalar, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Tick<'_, S, N> {
-    /// One substep that starts at `time` with `motion` and leaves it as it is at the end. Returns
-    /// how far the forces (F0) were from balance at the velocity foreseen, and the speed (L_ce0/s).
+    /// One substep that starts at `time` with `motion` and leaves it as it is at the end.
     #[inline(always)]
-    fn substep<R: RecruitmentTick<S, N>>(&self, motion: &mut Motion<S>, time: S) -> (S, S) {
+    fn substep<R: RecruitmentTick<S, N>>(&self, motion: &mut Motion<S>, time: S) -> Passed<S> {
         let (c, element) = (self.contraction, self.contractile);
         let substep = &c.substep;
         let (start, half) = (motion.velocity, substep.half_share);
@@ -302,12 +323,11 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
 
         // What pulls at the fascicles ever more, though velocity stay: F0 in half the substep.
         let growing = stiffness * (self.path_speed - middle) - elastic * middle - half * rise;
-        let left = c.decay.of(inertia, damping, middle - start, growing);
-        *motion = Motion {
-            travel: motion.travel + substep.share * (middle + left.mean),
-            velocity: middle + left.end,
-        };
-        (balance.abs(), middle.abs())
+        let left = decay::left(inertia, damping, middle - start, growing);
+        let mean = middle + left.mean;
+        *motion =
+            Motion { travel: motion.travel + substep.share * mean, velocity: middle + left.end };
+        Passed { balance: balance.abs(), speed_at_middle: middle.abs(), mean_speed: mean.abs() }
     }
 }
 
@@ -319,6 +339,7 @@ fn least<S: Scalar, R: RecruitmentTick<S, N>, const N: usize>(passive: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::presets::PAPER_MUSCLE;
 
     #[test]
     fn a_taut_tendon_rings_at_its_own_phase() {
@@ -329,5 +350,21 @@ mod tests {
         // The midpoint rule turns the phase by 2 atan(h/2 sqrt(stiffness/mass)).
         let found = (stiffness * half / inertia).sqrt().atan();
         assert!((found - half * (stiffness / mass).sqrt()).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn a_class_sets_the_substeps_of_a_tick() {
+        let count = |class, milliseconds: f64| {
+            let step = TimeStep::from_seconds(milliseconds * 1e-3).unwrap();
+            let muscle = MuscleParams { class, ..PAPER_MUSCLE };
+            substeps(class, step, moving_mass(&muscle), tendon_stiffness(&muscle))
+        };
+        let counts = [0.1, 0.5, 1.0, 2.0]
+            .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
+        assert_eq!(counts, [[1, 1, 2], [1, 4, 9], [1, 4, 10], [2, 8, 20]]);
+        // A tendon that is so short that the muscle would ring by more than half a period in a tick.
+        let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });
+        let mass = moving_mass(&PAPER_MUSCLE);
+        assert_eq!(substeps(Class::Economy, TimeStep::MILLISECOND, mass, short), 2);
     }
 }

@@ -104,8 +104,6 @@ pub(crate) struct Distance<S: Scalar> {
     offset: S,
     /// ln |L - 1|.
     logarithm: S,
-    /// 1/|L - 1|.
-    reciprocal: S::Factor,
 }
 
 impl<S: Scalar> OptimalLength<S> {
@@ -116,8 +114,7 @@ impl<S: Scalar> OptimalLength<S> {
     /// For fascicles of a length (L_ce0).
     pub(crate) fn distance(&self, fascicle_length: S) -> Distance<S> {
         let offset = fascicle_length - S::ONE;
-        let distance = offset.abs().max(self.nearest);
-        Distance { offset, logarithm: distance.ln(), reciprocal: distance.reciprocal_factor() }
+        Distance { offset, logarithm: offset.abs().max(self.nearest).ln() }
     }
 }
 
@@ -140,15 +137,11 @@ impl<S: Scalar> ForceLength<S> {
         }
     }
 
-    /// FL (0..1) and its slope (1/L_ce0) at a distance from the optimal length.
+    /// FL (0..1) at a distance from the optimal length.
     #[inline(always)]
-    pub(crate) fn at(&self, distance: &Distance<S>) -> (S, S) {
-        let offset = distance.offset;
-        let (smooth, smooth_slope) = offset.polynomial(&self.smooth);
-        let (lost, growth) = (self.roundness * distance.logarithm + smooth).weibull();
-        let cusp = (self.roundness * growth).scaled(&distance.reciprocal);
-        let cusp = if offset < S::ZERO { -cusp } else { cusp };
-        (S::ONE - lost, -(cusp + growth * smooth_slope))
+    pub(crate) fn at(&self, distance: &Distance<S>) -> S {
+        let (smooth, _) = distance.offset.polynomial(&self.smooth);
+        S::ONE - (self.roundness * distance.logarithm + smooth).weibull().0
     }
 }
 
@@ -160,8 +153,8 @@ pub(crate) mod tests {
     use crate::scalar::fixed::Fixed;
     use crate::{ContinuousMuscle, Input, TimeStep};
 
-    /// FL of a type, and its slope, at any length.
-    pub(crate) fn force_length<S: Scalar>(params: &ForceLengthParams) -> impl Fn(S) -> (S, S) {
+    /// FL of a type at any length.
+    pub(crate) fn force_length<S: Scalar>(params: &ForceLengthParams) -> impl Fn(S) -> S {
         let (optimal, relation) = (OptimalLength::new(), ForceLength::new(params, FASCICLE_DOMAIN));
         move |length| relation.at(&optimal.distance(length))
     }
@@ -171,18 +164,16 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn at_the_optimal_length_it_is_1_and_flat() {
+    fn at_the_optimal_length_it_is_1() {
         for p in PAPER_MUSCLE.fibers.map(|fiber| fiber.fiber_type.force_length) {
             let (f32, fixed) = (force_length::<f32>(&p), force_length::<Fixed>(&p));
             assert!(papers_force_length(&p, 1.0 + NEAREST) > 1.0 - 2e-9);
             for units in -300..=300 {
                 let length = 1.0 + f64::from(units) * 2_f64.powi(-23);
                 let of_f32 = f32(length as f32);
-                let of_f32 = (f64::from(of_f32.0), f64::from(of_f32.1));
-                let of_fixed = fixed(Fixed::from_f64(length));
-                for (value, slope) in [of_f32, (of_fixed.0.to_f64(), of_fixed.1.to_f64())] {
+                let of_fixed = fixed(Fixed::from_f64(length)).to_f64();
+                for value in [f64::from(of_f32), of_fixed] {
                     assert!((value - 1.0).abs() < 4e-7, "L {length}: {value}");
-                    assert!(slope.abs() < 0.012, "L {length}: slope {slope}");
                 }
             }
         }
@@ -198,7 +189,7 @@ pub(crate) mod tests {
                     for step in 0..=700 {
                         let length = f64::from((0.4 + 0.002 * f64::from(step)) as f32);
                         let exact = papers_force_length(&p, length);
-                        for found in [f64(length).0, f64::from(f32(length as f32).0)] {
+                        for found in [f64(length), f64::from(f32(length as f32))] {
                             let error = (found - exact).abs();
                             assert!(error < 1.2e-4, "{p:?}, L {length}: {found} {exact}");
                         }

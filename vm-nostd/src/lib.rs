@@ -106,6 +106,7 @@
 mod activation;
 mod bank;
 mod checksum;
+mod class;
 mod contraction;
 mod domain;
 mod error;
@@ -136,6 +137,7 @@ mod yielding;
 pub use activation::ActivationParams;
 pub use bank::{Bank, BankFull, BankedMuscle};
 pub use checksum::Checksum;
+pub use class::Class;
 pub use domain::Status;
 pub use error::{Limit, ParameterError};
 pub use excitation::ExcitationParams;

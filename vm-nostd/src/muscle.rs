@@ -12,13 +12,13 @@ use crate::params::{FiberParams, MuscleParams};
 use crate::passive::{Compression, Parallel};
 use crate::recruitment::{
     Course, EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous,
-    NaturalDiscrete, Recruitment, RecruitmentTick,
+    NaturalDiscrete, Recruitment, RecruitmentTick, share,
 };
 use crate::sag::Sag;
 use crate::scalar::Scalar;
-use crate::state::{RestoreError, Saved, State};
+use crate::state::{ROUNDING, RestoreError, Saved, State};
 use crate::time_step::TimeStep;
-use crate::yielding::Yielding;
+use crate::yielding::{Speed, Yielding};
 
 /// Inputs of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,6 +179,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             tendon_extension: (least + most).half(),
             fascicle_velocity: S::ZERO,
             path_length,
+            gains: [S::ZERO; N],
+            compressed: S::ZERO,
+            speed: Speed::NONE,
             yieldings: [S::ONE.slow(); N],
             recruitment: self.recruitment.at_rest(&self.fibers),
         })
@@ -230,11 +233,19 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let speeds = &self.domain.fascicle_velocity;
         let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
         let path_length = saved.path::<S>(&self.domain.path_length)?;
+        let rounding = S::from_f64(ROUNDING);
+        let about_a_share = |value: S| share::<S>().about_contains(value, rounding);
+        let compressed = saved.number(about_a_share)?;
+        let speed = Speed::restored(&mut saved)?;
         let length = self.contraction.tendon.fascicle_length(path_length, tendon_extension);
         let (nearest, _) = self.domain.fascicle_length.clip(length);
         // A length that was stopped at a limit comes back with the rounding of its extension.
         if (length - nearest).abs() > S::from_f64(1e-4) {
             return Err(RestoreError::Value { word: 1 });
+        }
+        let mut gains = [S::ZERO; N];
+        for gain in &mut gains {
+            *gain = saved.number(about_a_share)?;
         }
         let mut yieldings = [S::ONE.slow(); N];
         for (kept, fiber) in yieldings.iter_mut().zip(&self.fibers) {
@@ -242,7 +253,16 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
         let recruitment = self.recruitment.restored(&self.fibers, &mut saved)?;
         saved.finished()?;
-        Ok(State { tendon_extension, fascicle_velocity, path_length, yieldings, recruitment })
+        Ok(State {
+            tendon_extension,
+            fascicle_velocity,
+            path_length,
+            gains,
+            compressed,
+            speed,
+            yieldings,
+            recruitment,
+        })
     }
 
     /// The state as an output, as it was after the tick that left it: force, length, velocity.
@@ -262,8 +282,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// output's status, and the state stays finite whatever comes.
     ///
     /// Slow quantities (excitation, sag, yield, activation, the lengths' influence) are taken at
-    /// the middle of the tick, with their change across it; the mechanics are then integrated
-    /// implicitly on top of them.
+    /// the middle of the tick and change across it as they did since the middle before; the mechanics are
+    /// then integrated implicitly on top of them.
     pub fn step(&self, state: &mut State<S, R, N>, input: Input<S>) -> Output<S> {
         let (input, mut status) = self.domain.admit(input, state.path_length);
         let tendon = &self.contraction.tendon;
@@ -271,23 +291,11 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let travel = self.contraction.lengthening(state.fascicle_velocity);
         let midway = self.domain.midway(length + travel.half());
+        let yieldings = self.yieldings(state);
         let reciprocal = midway.inside.reciprocal();
-
-        // Kept at the middles of the ticks, Y needs its target only once, where the tick starts; its
-        // change across the tick is taken to be that from the middle before.
-        let mut yieldings = [[S::ONE; 2]; N];
-        for ((both, fiber), kept) in
-            yieldings.iter_mut().zip(&self.fibers).zip(&mut state.yieldings)
-        {
-            let before = S::of(*kept);
-            *kept = fiber.yielding.advance(*kept, state.fascicle_velocity);
-            let middle = S::of(*kept);
-            let half_change = (middle - before).half();
-            *both = [middle - half_change, middle + half_change];
-        }
         let moment =
             Moment { input, fascicle_length: midway.length, travel, reciprocal, yieldings };
-        let contractile = self.contractile(&mut state.recruitment, &moment, length, midway.inside);
+        let contractile = self.contractile(state, &moment, length, midway.inside);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
         let extension = Course { middle: state.tendon_extension + stretch.half(), change: stretch };
@@ -298,6 +306,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         );
         status.set(Status::MECHANICS_UNSETTLED, !end.settled);
         status.set(Status::FASCICLE_VELOCITY_LIMITED, end.held);
+        state.speed = end.speed;
         let Motion { travel, velocity } = end.motion;
         state.path_length = input.path_length;
         state.fascicle_velocity = velocity;
@@ -342,12 +351,29 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status
     }
 
+    /// Y of each type at the middle of the tick that begins. It is brought to that beginning by the speed in
+    /// the last tick, and goes on for half of this one as it did in the last.
+    fn yieldings(&self, state: &mut State<S, R, N>) -> [S; N] {
+        let mut middles = [S::ONE; N];
+        let kept = state.yieldings.iter_mut().zip(&self.fibers);
+        for (middle, (kept, fiber)) in middles.iter_mut().zip(kept) {
+            let before = S::of(*kept);
+            *kept = fiber.yielding.advance(*kept, &state.speed);
+            let start = S::of(*kept);
+            *middle = start + (start - before).half();
+        }
+        middles
+    }
+
     /// Advances recruitment, and puts together the contractile element during the tick of a `moment`,
     /// whose fascicles are at `start` when it starts and, where the filaments' equations hold,
     /// `inside` at its middle (all L_ce0).
+    ///
+    /// Gains are taken at the middles of the ticks, and change across a tick by as much as from the middle
+    /// before to this one: their slopes by length, frequency and recruitment need not be known.
     fn contractile(
         &self,
-        recruitment: &mut R::State,
+        state: &mut State<S, R, N>,
         moment: &Moment<S, N>,
         start: S,
         inside: S,
@@ -356,37 +382,34 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let distance = self.optimal_length.distance(inside);
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
-        let mut gains = [Course::constant(S::ZERO); N];
-        let mut compressed = Course::constant(S::ZERO);
-        let mut next = gains.iter_mut();
-        self.recruitment.advance(&self.fibers, recruitment, moment, |fiber, recruited| {
-            let Course { middle: activation, change: activation_change } = recruited.activation;
-            let weight = &recruited.compression_weight;
-            compressed.middle = compressed.middle + weight.middle * activation;
-            compressed.change =
-                compressed.change + weight.change * activation + weight.middle * activation_change;
-
-            let (length_factor, length_slope) = fiber.force_length.at(&distance);
-            let weight = &recruited.weight;
-            let active = activation * length_factor;
-            let active_change =
-                activation_change * length_factor + activation * length_slope * travel;
-            let middle = weight.middle * active;
-            // A gain that falls fast would pass 0 before the tick's end.
-            let most = middle + middle;
-            let change = weight.change * active + weight.middle * active_change;
-            if let Some(gain) = next.next() {
-                *gain = Course { middle, change: change.max(-most).min(most) };
+        let mut gains = [Course { middle: S::ZERO, change: S::ZERO }; N];
+        let mut compressed = Course { middle: S::ZERO, change: S::ZERO };
+        let mut jumps = false;
+        let mut next = gains.iter_mut().zip(&mut state.gains);
+        self.recruitment.advance(&self.fibers, &mut state.recruitment, moment, |fiber, of_type| {
+            let activation = of_type.activation;
+            compressed.middle = compressed.middle + of_type.compression_weight * activation;
+            jumps = of_type.change_after_jump.is_some();
+            let active = activation * fiber.force_length.at(&distance);
+            let gain = of_type.weight * active;
+            if let Some((course, kept)) = next.next() {
+                let change =
+                    of_type.change_after_jump.map_or(gain - *kept, |weight| weight * active);
+                // A gain that falls fast would pass 0 before the tick's end.
+                *course = Course { middle: gain, change: change.max(-(gain + gain)) };
+                *kept = gain;
             }
         });
+        if !jumps {
+            compressed.change = compressed.middle - state.compressed;
+        }
+        state.compressed = compressed.middle;
         let passive_slope = parallel_slope + compressed.middle * compression_slope;
         let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {
             gains,
             fibers: &self.fibers,
-            curves: core::array::from_fn(|index| {
-                self.fibers[index].force_velocity.at(inside, travel)
-            }),
+            curves: self.fibers.each_ref().map(|fiber| fiber.force_velocity.at(inside, travel)),
             passive: Course {
                 middle: passive_at_middle
                     + passive_slope * (start - middle).scaled(&self.tick_rate),

@@ -163,15 +163,7 @@ fn force_length_is_the_papers() {
         let fixed = force_length::<Fixed>(p);
         for l in spaced(0.4, 1.8, 2801) {
             let l = shared(l);
-            let (at_fixed, at64) = (fixed(q(l)), f64(l));
-            value.see(f32(l as f32).0, at_fixed.0, at64.0, papers_force_length(p, l));
-            // The slope has a cusp at optimal length.
-            if (l - 1.0).abs() > 1e-3 {
-                let by_difference = slope(|l| papers_force_length(p, l), l);
-                let off = (at64.1 - by_difference).abs();
-                assert!(off < 2e-4, "L {l}: {off:e}");
-                assert!((Scalar::to_f64(at_fixed.1) - at64.1).abs() < 1e-3, "L {l}");
-            }
+            value.see(f32(l as f32), fixed(q(l)), f64(l), papers_force_length(p, l));
         }
     }
     value.assert_bound("FL");
@@ -239,16 +231,10 @@ fn activation_by_frequency_is_the_papers() {
             };
             for f in spaced(0.0, 4.0, 200) {
                 let f = shared(f);
-                let at_fixed = fixed.at(q(l).reciprocal()).at(q(f), Fixed::ZERO, Fixed::ZERO);
-                let at32 = a32.at(1.0 / l as f32).at(f as f32, 0.0, 0.0);
-                let at64 = a64.at(1.0 / l).at(f, 0.0, 0.0);
-                value.see(at32.middle, at_fixed.middle, at64.middle, exact(f, l));
-                if f > 0.18 && l < longest - 1e-3 {
-                    // Along a direction in frequency and length together.
-                    let change = a64.at(1.0 / l).at(f, 0.7, 0.2).change;
-                    let by_difference = slope(|s| exact(f + 0.7 * s, l + 0.2 * s), 0.0);
-                    assert!((change - by_difference).abs() < 1e-4, "{change} {by_difference}");
-                }
+                let at_fixed = fixed.at(q(l).reciprocal()).at(q(f));
+                let at32 = a32.at(1.0 / l as f32).at(f as f32);
+                let at64 = a64.at(1.0 / l).at(f);
+                value.see(at32, at_fixed, at64, exact(f, l));
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Parameters of a muscle, in SI units and `f64`, and their limits.
 
 use crate::activation::ActivationParams;
+use crate::class::Class;
 use crate::contraction::largest_inertia;
 use crate::domain::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
 use crate::error::{Limit, ParameterError, within};
@@ -124,6 +125,9 @@ pub struct MuscleParams<const N: usize> {
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
     pub recruitment_saturation: f64,
+    /// How accurate it is computed.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub class: Class,
     /// Coefficients shared by the fibre types.
     pub elements: ElementParams,
     /// Fibre types in order of rank; their fractions add to 1.

@@ -20,6 +20,7 @@ pub(crate) const PAPER_MUSCLE: crate::MuscleParams<2> = crate::MuscleParams {
     tendon_length: 0.02,
     max_path_length: 0.184,
     recruitment_saturation: 0.8,
+    class: crate::Class::Standard,
     elements: paper_table_1::ELEMENTS,
     fibers: [
         crate::FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },

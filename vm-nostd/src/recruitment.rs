@@ -97,32 +97,24 @@ pub struct Moment<S: Scalar, const N: usize> {
     pub(crate) travel: S,
     /// 1/L at the middle, L being where the filaments' equations hold.
     pub(crate) reciprocal: S,
-    /// Y of each type at the tick's start and end.
-    pub(crate) yieldings: [[S; 2]; N],
+    /// Y of each type at the middle.
+    pub(crate) yieldings: [S; N],
 }
 
 /// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it is:
-/// Af during the tick, for a frequency (f0.5), Y at start and end, and the curve of its length.
+/// Af at the tick's middle, for a frequency (f0.5) and Y there, and the curve of its length.
 #[inline(always)]
 pub(crate) fn activated<S: Scalar>(
     fiber: &Fiber<S>,
     curve: &ActivationCurve<S>,
     sag: &mut S::Slow,
-    [yielding, yielding_after]: [S; 2],
-    frequency: Course<S>,
+    yielding: S,
+    frequency: S,
     firing: S,
-    length_change: S,
-) -> Course<S> {
-    let sag_after = fiber.sag.advance(*sag, firing);
-    let before = yielding * S::of(*sag);
-    let after = yielding_after * S::of(sag_after);
-    *sag = sag_after;
-    let modulation = (before + after).half();
-    curve.at(
-        frequency.middle * modulation,
-        frequency.change * modulation + frequency.middle * (after - before),
-        length_change,
-    )
+) -> S {
+    let before = S::of(*sag);
+    *sag = fiber.sag.advance(*sag, firing);
+    curve.at(frequency * (yielding * (before + S::of(*sag)).half()))
 }
 
 /// A quantity during a tick: its value at the middle, and its change from start to end.
@@ -134,31 +126,55 @@ pub struct Course<S> {
 }
 
 impl<S: Scalar> Course<S> {
-    pub(crate) fn constant(value: S) -> Self {
-        Self { middle: value, change: S::ZERO }
-    }
-
-    /// What a share (0..1) with this course will be at the middle of the next tick.
-    pub(crate) fn next_share(&self) -> S {
-        (self.middle + self.change).max(S::ZERO).min(S::ONE)
-    }
-
     /// The value `time` ticks after the middle.
     pub(crate) fn at(&self, time: S) -> S {
         self.middle + self.change * time
     }
 }
 
-/// How a fibre type is recruited during a tick.
+/// Af of a unit from tick to tick: what its fall time has to be told before Af is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Activity<S> {
+    /// Af at the middle of the last tick, 0..1.
+    last: S,
+    /// Af predicted for the middle of the next, 0..1: as far on as it came last.
+    pub(crate) predicted: S,
+}
+
+impl<S: Scalar> Activity<S> {
+    const WORDS: usize = 2;
+    const NONE: Self = Self { last: S::ZERO, predicted: S::ZERO };
+
+    /// What follows Af at the middle of a tick.
+    fn next(&self, activation: S) -> Self {
+        let share = share();
+        let (predicted, _) = share.clip(activation + (activation - self.last));
+        Self { last: activation, predicted }
+    }
+
+    fn words(self) -> impl Iterator<Item = S::Bits> {
+        [self.last.to_bits(), self.predicted.to_bits()].into_iter()
+    }
+
+    fn restored<I: Iterator<Item = S::Bits>>(saved: &mut Saved<I>) -> Result<Self, RestoreError> {
+        let mut of_share = || saved.number(|value| share().contains(value));
+        Ok(Self { last: of_share()?, predicted: of_share()? })
+    }
+}
+
+/// How a fibre type is recruited at the middle of a tick.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Recruited<S> {
     /// Af, in the discrete modes summed over the units by cross section.
-    pub(crate) activation: Course<S>,
+    pub(crate) activation: S,
     /// Share of the muscle's force that the type's filaments add, at Af FL FV = 1.
-    pub(crate) weight: Course<S>,
-    /// The same for the compression of its thick filaments.
-    pub(crate) compression_weight: Course<S>,
+    pub(crate) weight: S,
+    /// Change of the weight across the tick, if Af has jumped where the tick starts, as with the stimulation
+    /// frequency. Nothing else jumps: elsewhere the change since the last tick tells that across this one.
+    pub(crate) change_after_jump: Option<S>,
+    /// Share for the compression of its thick filaments.
+    pub(crate) compression_weight: S,
 }
 
 /// What a share may be.

@@ -56,6 +56,7 @@ fn muscles() -> Vec<MuscleParams<2>> {
         tendon_length,
         max_path_length: 1.4 * fascicle_length + tendon_length,
         recruitment_saturation: 0.8,
+        class: crate::Class::Standard,
         elements,
         fibers: [
             FiberParams { fraction: 0.6, fiber_type: slow },

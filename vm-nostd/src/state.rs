@@ -4,6 +4,7 @@ use crate::checksum::{Checksum, Summed};
 use crate::domain::Range;
 use crate::recruitment::{NaturalContinuous, Recruitment, RecruitmentState};
 use crate::scalar::Scalar;
+use crate::yielding::Speed;
 use core::fmt;
 
 /// The state of a muscle of `N` fibre types recruited as `R` says, plain data: copy it to save it.
@@ -19,7 +20,13 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     pub(crate) fascicle_velocity: S,
     /// L_mt at the end of the last tick.
     pub(crate) path_length: S::PathLength,
-    /// Y of each type at the middle of the last tick, 0..1.
+    /// What multiplied FV of each type at the middle of the last tick, 0..1.
+    pub(crate) gains: [S; N],
+    /// What multiplied F_pe2 there, 0..1.
+    pub(crate) compressed: S,
+    /// Speed during the last tick: what Y has still to be advanced by.
+    pub(crate) speed: Speed<S>,
+    /// Y of each type at the start of the last tick, 0..1.
     pub(crate) yieldings: [S::Slow; N],
     pub(crate) recruitment: R::State,
 }
@@ -68,7 +75,7 @@ impl core::error::Error for RestoreError {}
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// How many words [`words`](Self::words) gives.
-    pub const WORDS: usize = 3 + N * S::SLOW_WORDS + R::State::WORDS;
+    pub const WORDS: usize = 6 + N * (1 + S::SLOW_WORDS) + R::State::WORDS;
     /// How many words the state is saved in: whose it is, and all of it.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
@@ -85,17 +92,22 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     }
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
-    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; Y of each type, half a tick
-    /// ago; U_eff, where each type is one unit; and of each unit f_int, f_eff, S, the Af foreseen
+    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; what multiplied F_pe2 in the middle of the
+    /// last tick, mean and variance of the speed in it; what multiplied FV of each type in its middle; Y of
+    /// each type where it started; U_eff, where each type is one unit; and of each unit f_int, f_eff, S, the Af foreseen
     /// for the next tick, and its effective length where it has one.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
             self.tendon_extension.to_bits(),
             self.fascicle_velocity.to_bits(),
             S::path_bits(self.path_length),
+            self.compressed.to_bits(),
+            self.speed.mean.to_bits(),
+            self.speed.variance.to_bits(),
         ];
         of_muscle
             .into_iter()
+            .chain(self.gains.into_iter().map(S::to_bits))
             .chain(self.yieldings.into_iter().flat_map(S::slow_words))
             .chain(self.recruitment.words())
     }
@@ -104,12 +116,12 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
 impl<S: Scalar, const N: usize> State<S, NaturalContinuous, N> {
     /// Effective activation U_eff, 0..1.
     pub fn effective_activation(&self) -> S {
-        S::of(self.recruitment.effective_activation)
+        S::of(self.recruitment.shared)
     }
 }
 
 /// What a value of a saved state may be outside of its range by.
-const ROUNDING: f64 = 1e-5;
+pub(crate) const ROUNDING: f64 = 1e-5;
 
 /// Words that are being read.
 #[doc(hidden)]

@@ -264,9 +264,9 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             let frequency = S::of_quantity(input.stimulation_frequency, per);
             let sag = fiber.sag[usize::from(frequency > self.firing)];
             let curve = fiber.activation.at(reciprocal);
-            let activation = curve.at(frequency * sag, S::ZERO, S::ZERO).middle;
+            let activation = curve.at(frequency * sag);
             let share = fiber.fraction * activation;
-            active = active + share * fiber.force_length.at(&distance).0;
+            active = active + share * fiber.force_length.at(&distance);
             compressed = compressed + share;
         }
         let passive = self.parallel.at(length).0 + compressed * self.compression.at(length).0;

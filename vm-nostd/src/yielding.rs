@@ -1,10 +1,11 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
 use crate::checksum::summed;
-use crate::domain::Range;
+use crate::domain::{MAXIMUM_SPEED, Range};
 use crate::error::{ParameterError, within};
 use crate::lag::Lag;
 use crate::scalar::Scalar;
+use crate::state::{RestoreError, Saved};
 use crate::time_step::TimeStep;
 
 /// Coefficients of yield.
@@ -31,16 +32,45 @@ impl YieldParams {
     }
 }
 
+/// The unit of a variance of speeds, (L_ce0/s)²: no square of a speed that fascicles can have is out of the
+/// range of fixed point.
+pub(crate) const SPREAD: f64 = 64.0;
+
+/// Fascicle speed |V| during a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Speed<S> {
+    /// Its mean, L_ce0/s.
+    pub(crate) mean: S,
+    /// Its variance, [`SPREAD`] (L_ce0/s)²; never negative.
+    pub(crate) variance: S,
+}
+
+impl<S: Scalar> Speed<S> {
+    pub(crate) const NONE: Self = Self { mean: S::ZERO, variance: S::ZERO };
+
+    pub(crate) fn restored<I: Iterator<Item = S::Bits>>(
+        saved: &mut Saved<I>,
+    ) -> Result<Self, RestoreError> {
+        // The mean of a substep may be beyond the greatest speed, which is that of its middle, by a
+        // few percent; a variance is less than the square of that.
+        let range = Range::new((0.0, 2.0 * MAXIMUM_SPEED), S::from_f64);
+        let mut number = || saved.number(|value| range.contains(value));
+        Ok(Self { mean: number()?, variance: number()? })
+    }
+}
+
 /// Yield of one fibre type; Y stays 1 for a type without it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Yielding<S: Scalar> {
     depth: S,
     /// 1/VY.
     per_velocity: S::Factor,
+    /// Half the unit of a variance of speeds over VY².
+    per_spread: S::Factor,
     lag: Lag<S>,
 }
 
-summed!([S: Scalar] Yielding<S> { depth, per_velocity, lag });
+summed!([S: Scalar] Yielding<S> { depth, per_velocity, per_spread, lag });
 
 impl<S: Scalar> Yielding<S> {
     pub(crate) fn new(params: Option<&YieldParams>, step: TimeStep) -> Self {
@@ -49,6 +79,7 @@ impl<S: Scalar> Yielding<S> {
         Self {
             depth: S::from_f64(depth),
             per_velocity: S::factor(1.0 / velocity),
+            per_spread: S::factor(0.5 * SPREAD / (velocity * velocity)),
             lag: Lag::new(time_constant, step),
         }
     }
@@ -58,14 +89,19 @@ impl<S: Scalar> Yielding<S> {
         Range { least: S::ONE - self.depth, most: S::ONE }
     }
 
-    /// Y a tick later than it was, the fascicle velocity (L_ce0/s) being given for the middle of that
-    /// time.
+    /// Y at a tick's end, by the fascicle speed during that tick.
+    ///
+    /// The mean of exp(-|V|/VY) over the tick is exp(-mean/VY) (1 + variance/(2 VY²)) to second order. A
+    /// velocity taken at the tick's boundary would be biased: inputs that step every tick make it ripple
+    /// in step with them.
     #[inline(always)]
-    pub(crate) fn advance(&self, yielding: S::Slow, velocity: S) -> S::Slow {
+    pub(crate) fn advance(&self, yielding: S::Slow, speed: &Speed<S>) -> S::Slow {
         if self.depth == S::ZERO {
             return yielding;
         }
-        let lost = S::ONE - (-velocity.abs().scaled(&self.per_velocity)).exp();
-        self.lag.at_end(yielding, S::ONE - self.depth * lost)
+        let at_mean = (-speed.mean.scaled(&self.per_velocity)).exp();
+        let spread = speed.variance.scaled(&self.per_spread);
+        let kept = (at_mean + at_mean * spread).min(S::ONE);
+        self.lag.at_end(yielding, S::ONE - self.depth * (S::ONE - kept))
     }
 }

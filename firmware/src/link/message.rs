@@ -13,7 +13,7 @@ use vm_nostd::{Limit, MuscleParams, ParameterError, RecruitmentCurveParams};
 /// Most rows in a message.
 pub const MOST_ROWS: usize = 8;
 /// Most state words in a message.
-pub const MOST_WORDS: usize = 16;
+pub const MOST_WORDS: usize = 24;
 
 /// A request of the host. Each is answered by a [`Message::Answer`]; the next is sent after that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use vm_nostd::{
-    ActingLength, ElementParams, FiberParams, FiberType, IntramuscularFes, MotorUnits, Muscle,
-    MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, Scalar, TimeStep, UnitSizes,
-    feline_vm4, human_vm4, paper_table_1,
+    ActingLength, Class, ElementParams, FiberParams, FiberType, IntramuscularFes, MotorUnits,
+    Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, Scalar, TimeStep,
+    UnitSizes, feline_vm4, human_vm4, paper_table_1,
 };
 
 /// Fibre types of these muscles.
@@ -87,6 +87,7 @@ pub fn muscles() -> impl Strategy<Value = MuscleParams<TYPES>> {
                 tendon_length: tendon,
                 max_path_length: fascicle + tendon,
                 recruitment_saturation: saturation,
+                class: Class::Standard,
                 elements,
                 fibers: [
                     FiberParams { fraction, fiber_type: types[0] },

@@ -10,8 +10,8 @@ use model_tests::muscles::{Discrete, Mode, built};
 use std::fmt::Write;
 use std::path::Path;
 use vm_nostd::{
-    EffectiveLength, FascicleLength, FiberParams, Fixed, Input, IntramuscularFes, MuscleParams,
-    NaturalContinuous, Scalar, TimeStep, feline_vm4, human_vm4,
+    Class, EffectiveLength, FascicleLength, FiberParams, Fixed, Input, IntramuscularFes,
+    MuscleParams, NaturalContinuous, Scalar, TimeStep, feline_vm4, human_vm4,
 };
 
 /// Ticks of each run: several steps of activation and frequency, and mishaps.
@@ -24,6 +24,7 @@ const LONG_TENDON: MuscleParams<2> = MuscleParams {
     tendon_length: 0.17,
     max_path_length: 0.253,
     recruitment_saturation: 1.0,
+    class: Class::Standard,
     elements: human_vm4::ELEMENTS,
     fibers: [
         FiberParams { fraction: 0.7, fiber_type: human_vm4::SUPER_SLOW },
@@ -38,6 +39,7 @@ const FELINE: MuscleParams<2> = MuscleParams {
     tendon_length: 0.05,
     max_path_length: 0.102,
     recruitment_saturation: 0.6,
+    class: Class::Standard,
     elements: feline_vm4::ELEMENTS,
     fibers: [
         FiberParams { fraction: 0.4, fiber_type: feline_vm4::SLOW },

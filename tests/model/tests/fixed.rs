@@ -6,7 +6,7 @@ use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode as AnyMode, built, config, muscles, steps};
 use proptest::prelude::*;
 use vm_nostd::{
-    ActivationParams, CompressionParams, ContinuousMuscle, EffectiveLength, ElementParams,
+    ActivationParams, Class, CompressionParams, ContinuousMuscle, EffectiveLength, ElementParams,
     ExcitationParams, FascicleLength, FesMuscle, FiberParams, FiberType, Fixed, ForceLengthParams,
     ForceVelocityParams, Input, IntramuscularFes, MuscleParams, NaturalContinuous, ParallelParams,
     RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, human_vm4,
@@ -91,6 +91,7 @@ fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
                 tendon_length,
                 max_path_length: fascicle_length + tendon_length,
                 recruitment_saturation: saturation,
+                class: Class::Standard,
                 elements: ElementParams {
                     tendon: TendonParams { stiffness: t.0, toe: t.1, slack_length: t.2 },
                     parallel: ParallelParams {
@@ -235,19 +236,25 @@ fn states_that_no_tick_leaves_are_refused() {
     let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
     let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
-    // Word 0 says whose they are. Words 4 and 5 are Y of the slow type, which yields and does not
-    // sag, 8 and 9 U_eff, and 10 to 16 the rest of that type; lags have two, the higher one second.
+    // Word 0 is the fingerprint. Word 4 multiplied F_pe2, 5 and 6 are the speed, 7 and 8 the gains,
+    // 9 and 10 Y of the slow type, which yields and does not sag, 13 and 14 f_env of the first type,
+    // and 15 to 22 the rest of that type; lags have two, the higher one second.
     for (word, value) in [
         (1, 0x8000_0000), // extension -128
         (1, whole(129)),  // extension -127
         (2, whole(61)),   // velocity
         (3, 0x7FFF_FFFF), // path of 4.19 m
-        (5, 0),           // Y below 1 - c_Y
-        (9, whole(1)),    // U_eff under FES
-        (11, whole(2)),   // f_int above 1 under FES
-        (13, whole(100)), // f_eff
-        (15, whole(100)), // S of a type without sag
-        (16, whole(2)),   // Af
+        (4, whole(2)),    // share for the compression
+        (5, whole(255)),  // mean speed -1
+        (6, whole(255)),  // its variance
+        (8, whole(2)),    // gain
+        (10, 0),          // Y below 1 - c_Y
+        (14, whole(60)),  // f_env of more than 500 pps
+        (16, whole(2)),   // f_int above 1 under FES
+        (18, whole(100)), // f_eff
+        (20, whole(100)), // S of a type without sag
+        (21, whole(2)),   // Af
+        (22, whole(2)),   // Af predicted
     ] {
         let mut words = saved.clone();
         words[word] = value;

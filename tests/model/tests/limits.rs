@@ -135,6 +135,7 @@ fn what_does_not_fit_together_is_refused() {
         tendon_length: MUSCLE.tendon_length,
         max_path_length: MUSCLE.max_path_length,
         recruitment_saturation: MUSCLE.recruitment_saturation,
+        class: MUSCLE.class,
         elements: MUSCLE.elements,
         fibers: [],
     };

@@ -5,7 +5,7 @@
 use model_tests::muscles::config;
 use proptest::prelude::*;
 use vm_nostd::{
-    ElementParams, FascicleLength, FiberParams, FiberType, Fixed, Input, IntramuscularFes,
+    Class, ElementParams, FascicleLength, FiberParams, FiberType, Fixed, Input, IntramuscularFes,
     MotorUnits, Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, Scalar,
     Status, SteadyFes, TimeStep, UnitSizes, feline_vm4, human_vm4, paper_table_1,
 };
@@ -50,6 +50,7 @@ fn muscle(
         tendon_length,
         max_path_length: fascicle_length + tendon_length,
         recruitment_saturation,
+        class: Class::Standard,
         elements,
         fibers: std::array::from_fn(|index| FiberParams {
             fraction: fractions[index],

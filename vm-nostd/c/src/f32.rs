@@ -7,9 +7,9 @@ use core::mem::MaybeUninit;
 use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Input, TimeStep};
 
 /// Bytes of a VmMuscleF32.
-pub const VM_MUSCLE_F32_SIZE: usize = 568;
+pub const VM_MUSCLE_F32_SIZE: usize = 584;
 /// Words of its saved state.
-pub const VM_F32_STATE_WORDS: usize = 15;
+pub const VM_F32_STATE_WORDS: usize = 22;
 
 /// A muscle computed in float.
 pub type VmMuscleF32 = Slot<f32, 0x564D_4633>;

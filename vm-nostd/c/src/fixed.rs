@@ -7,9 +7,9 @@ use core::mem::MaybeUninit;
 use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Fixed, Input, Scalar, TimeStep};
 
 /// Bytes of a VmMuscleFixed.
-pub const VM_MUSCLE_FIXED_SIZE: usize = 680;
+pub const VM_MUSCLE_FIXED_SIZE: usize = 704;
 /// Words of its saved state.
-pub const VM_FIXED_STATE_WORDS: usize = 24;
+pub const VM_FIXED_STATE_WORDS: usize = 31;
 
 /// A muscle computed in fixed point.
 pub type VmMuscleFixed = Slot<Fixed, 0x564D_5158>;

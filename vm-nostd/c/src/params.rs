@@ -3,10 +3,17 @@
 use crate::result::{VmError, VmResult};
 use crate::slot::VM_FIBERS;
 use model::{
-    ActivationParams, CompressionParams, ElementParams, ExcitationParams, FiberParams, FiberType,
-    ForceLengthParams, ForceVelocityParams, Limit, MuscleParams, ParallelParams, ParameterError,
-    SagParams, TendonParams, YieldParams, human_vm4, paper_table_1,
+    ActivationParams, Class, CompressionParams, ElementParams, ExcitationParams, FiberParams,
+    FiberType, ForceLengthParams, ForceVelocityParams, Limit, MuscleParams, ParallelParams,
+    ParameterError, SagParams, TendonParams, YieldParams, human_vm4, paper_table_1,
 };
+
+/// Accuracy class: substeps of 0.25 ms or less; the default.
+pub const VM_CLASS_STANDARD: u32 = 0;
+/// Accuracy class: one substep a tick, unless the muscle rings too fast for that.
+pub const VM_CLASS_ECONOMY: u32 = 1;
+/// Accuracy class: substeps of 0.1 ms or less.
+pub const VM_CLASS_FINE: u32 = 2;
 
 /// A muscle of two fibre types.
 #[repr(C)]
@@ -23,6 +30,8 @@ pub struct VmMuscleParams {
     pub max_path_length_m: f64,
     /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
     pub recruitment_saturation: f64,
+    /// How accurate it is computed: VM_CLASS_STANDARD (0), VM_CLASS_ECONOMY or VM_CLASS_FINE.
+    pub accuracy_class: u32,
     /// Coefficients shared by the fibre types.
     pub elements: VmElements,
     /// Fibre types in order of rank; their fractions add to 1.
@@ -120,16 +129,30 @@ pub struct VmFiber {
 }
 
 impl VmMuscleParams {
-    /// Converts to the model's type; flags other than 0 and 1 are refused.
+    /// Converts to the model's type; an unknown class and flags other than 0 and 1 are refused.
     pub(crate) fn model(&self) -> Result<MuscleParams<VM_FIBERS>, ParameterError> {
         let e = &self.elements;
         let [first, second] = self.fibers;
+        let class = match self.accuracy_class {
+            VM_CLASS_STANDARD => Class::Standard,
+            VM_CLASS_ECONOMY => Class::Economy,
+            VM_CLASS_FINE => Class::Fine,
+            other => {
+                return Err(ParameterError {
+                    field: "accuracy_class",
+                    fiber: None,
+                    value: other.into(),
+                    limit: Limit::Within { least: 0.0, most: 2.0 },
+                });
+            }
+        };
         Ok(MuscleParams {
             mass: self.mass_kg,
             fascicle_length: self.fascicle_length_m,
             tendon_length: self.tendon_length_m,
             max_path_length: self.max_path_length_m,
             recruitment_saturation: self.recruitment_saturation,
+            class,
             elements: ElementParams {
                 tendon: TendonParams {
                     stiffness: e.tendon_stiffness,

@@ -3,7 +3,7 @@
 //! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own L_eff:
 //! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
-use super::{Course, Moment};
+use super::Moment;
 use crate::checksum::{Summed, summed};
 use crate::domain::Range;
 use crate::params::FiberType;
@@ -46,7 +46,7 @@ pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
         state: &mut Self::State,
         activation: S,
         moment: &Moment<S, N>,
-    ) -> Option<Course<S>>;
+    ) -> Option<S>;
 }
 
 impl<S: Scalar> ActingLength<S> for FascicleLength {
@@ -66,7 +66,7 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
     ) -> Result<(), RestoreError> {
         Ok(())
     }
-    fn advance<const N: usize>((): &(), (): &mut (), _: S, _: &Moment<S, N>) -> Option<Course<S>> {
+    fn advance<const N: usize>((): &(), (): &mut (), _: S, _: &Moment<S, N>) -> Option<S> {
         None
     }
 }
@@ -122,7 +122,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         state: &mut S::Slow,
         activation: S,
         moment: &Moment<S, N>,
-    ) -> Option<Course<S>> {
+    ) -> Option<S> {
         let before = S::of(*state);
         let inactive = (S::ONE - activation).max(coefficients.least_inactive);
         let quarter = moment.travel.half().half();
@@ -136,7 +136,6 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         let middle = S::of(S::moved(*state, first.0, first.1));
         let second = step(moment.fascicle_length + quarter, middle);
         *state = S::moved_by_two(*state, first, second);
-        let end = S::of(*state);
-        Some(Course { middle, change: end - before })
+        Some(middle)
     }
 }

@@ -9,7 +9,7 @@
 
 use super::firing::Firing;
 use super::lumped::LumpedState;
-use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use super::{Moment, Recruited, Recruitment, RecruitmentTick, activated};
 use crate::checksum::summed;
 use crate::domain::Range;
 use crate::error::ParameterError;
@@ -104,27 +104,21 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
     ) {
         let activation = moment.input.activation;
-        let start = state.effective_activation;
+        let start = state.shared;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
         let lag = if activation >= S::of(start) { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
-        let end = lag.at_end(start, activation);
-        state.effective_activation = end;
-        let change = S::of(end) - S::of(start);
+        state.shared = lag.at_end(start, activation);
 
-        let (mut sum, mut count) = (S::ZERO, S::ZERO);
+        let mut sum = S::ZERO;
         for unit in &self.units {
-            if middle >= unit.threshold {
-                sum = sum + (middle - unit.threshold);
-                count = count + S::ONE;
-            }
+            sum = sum + (middle - unit.threshold).max(S::ZERO);
         }
         // Where there is nothing to share, any divisor will do.
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
-        let relative_change = change.scaled(&per_sum);
 
-        let kept = state.fibers.iter_mut().zip(&mut state.activations);
-        for (((unit, (kept, foreseen)), fiber), yieldings) in
+        let kept = state.fibers.iter_mut().zip(&mut state.activities);
+        for (((unit, (kept, activity)), fiber), yieldings) in
             self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
         {
             let drive = unit.frequency(activation);
@@ -133,7 +127,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 (kept.intermediate_frequency, before),
                 drive,
                 drive,
-                *foreseen,
+                activity.predicted,
                 (moment.fascicle_length, moment.reciprocal),
             );
             kept.intermediate_frequency = excited.intermediate;
@@ -144,22 +138,20 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 &fiber.activation.at(moment.reciprocal),
                 &mut kept.sag,
                 *yieldings,
-                Course { middle: excited.effective_at_middle, change: end - start },
+                excited.effective_at_middle,
                 share_above(start, end, self.firing),
-                moment.travel,
             );
-            *foreseen = activation.next_share();
+            *activity = activity.next(activation);
 
-            // U_eff W = U_eff (U_eff - Uth)/sum, and its derivative by U_eff.
-            let excess = middle - unit.threshold;
-            let weight = if excess >= S::ZERO {
-                let value = middle * excess.scaled(&per_sum);
-                let slope = middle + excess - count * value;
-                Course { middle: value, change: slope * relative_change }
-            } else {
-                Course::constant(S::ZERO)
+            // U_eff W.
+            let weight = middle * (middle - unit.threshold).max(S::ZERO).scaled(&per_sum);
+            let recruitment = Recruited {
+                activation,
+                weight,
+                change_after_jump: None,
+                compression_weight: weight,
             };
-            recruited(fiber, Recruited { activation, weight, compression_weight: weight });
+            recruited(fiber, recruitment);
         }
     }
 }

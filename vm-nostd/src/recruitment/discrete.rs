@@ -7,7 +7,9 @@
 use super::acting_length::ActingLength;
 use super::firing::Firing;
 use super::motor_units::MotorUnits;
-use super::{Course, Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick, activated};
+use super::{
+    Activity, Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick, activated,
+};
 use crate::checksum::{Summed, summed};
 use crate::domain::Range;
 use crate::error::ParameterError;
@@ -73,8 +75,7 @@ struct UnitState<S: Scalar, L> {
     effective_frequency: S::Slow,
     /// S.
     sag: S::Slow,
-    /// Af that the last tick foresaw for the middle of the next, 0..1.
-    activation: S,
+    activity: Activity<S>,
     acting_length: L,
 }
 
@@ -120,7 +121,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             intermediate_frequency: S::ZERO.slow(),
             effective_frequency: S::ZERO.slow(),
             sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).slow(),
-            activation: S::ZERO,
+            activity: Activity::NONE,
             acting_length: A::at_rest(),
         });
         DiscreteState { units }
@@ -139,7 +140,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 intermediate_frequency: saved.slow(&frequencies)?,
                 effective_frequency: saved.slow(&frequencies)?,
                 sag: saved.slow(&levels)?,
-                activation: saved.number(|value| super::share().contains(value))?,
+                activity: Activity::restored(saved)?,
                 acting_length: A::restored(&unit.acting_length, saved)?,
             };
         }
@@ -154,7 +155,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
     ) {
         let curves = fibers.each_ref().map(|fiber| fiber.activation.at(moment.reciprocal));
-        let mut activations = [Course::constant(S::ZERO); N];
+        let mut activations = [S::ZERO; N];
         for (kept, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
             let of_type = fibers.get(unit.fiber).zip(curves.get(unit.fiber));
             let yieldings = moment.yieldings.get(unit.fiber);
@@ -169,16 +170,20 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 (kept.intermediate_frequency, before),
                 drive,
                 drive,
-                kept.activation,
+                kept.activity.predicted,
                 (moment.fascicle_length, moment.reciprocal),
             );
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
-            let acting_length =
-                A::advance(&unit.acting_length, &mut kept.acting_length, kept.activation, moment);
-            let (curve, length_change) = match acting_length {
-                Some(own) => (fiber.activation.at(own.middle.reciprocal()), own.change),
-                None => (*curve, moment.travel),
+            let acting_length = A::advance(
+                &unit.acting_length,
+                &mut kept.acting_length,
+                kept.activity.predicted,
+                moment,
+            );
+            let curve = match acting_length {
+                Some(own) => fiber.activation.at(own.reciprocal()),
+                None => *curve,
             };
             let (start, end) = (S::of(before), S::of(excited.effective));
             let activation = activated(
@@ -186,17 +191,20 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 &curve,
                 &mut kept.sag,
                 *yieldings,
-                Course { middle: excited.effective_at_middle, change: end - start },
+                excited.effective_at_middle,
                 share_above(start, end, self.firing),
-                length_change,
             );
-            kept.activation = activation.next_share();
-            sum.middle = sum.middle + unit.share * activation.middle;
-            sum.change = sum.change + unit.share * activation.change;
+            kept.activity = kept.activity.next(activation);
+            *sum = *sum + unit.share * activation;
         }
-        let whole = Course::constant(S::ONE);
         for (fiber, activation) in fibers.iter().zip(activations) {
-            recruited(fiber, Recruited { activation, weight: whole, compression_weight: whole });
+            let recruitment = Recruited {
+                activation,
+                weight: S::ONE,
+                change_after_jump: None,
+                compression_weight: S::ONE,
+            };
+            recruited(fiber, recruitment);
         }
     }
 }
@@ -204,14 +212,14 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
     for DiscreteState<S, A, UNITS>
 {
-    const WORDS: usize = UNITS * (1 + 3 * S::SLOW_WORDS + A::WORDS);
+    const WORDS: usize = UNITS * (Activity::<S>::WORDS + 3 * S::SLOW_WORDS + A::WORDS);
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         self.units.into_iter().flat_map(|unit| {
             S::slow_words(unit.intermediate_frequency)
                 .chain(S::slow_words(unit.effective_frequency))
                 .chain(S::slow_words(unit.sag))
-                .chain([unit.activation.to_bits()])
+                .chain(unit.activity.words())
                 .chain(A::words(unit.acting_length))
         })
     }

@@ -6,9 +6,9 @@
 //! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
 
 use super::lumped::LumpedState;
-use super::{Course, Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use super::{Moment, Recruited, Recruitment, RecruitmentTick, activated};
 use crate::checksum::summed;
-use crate::domain::Range;
+use crate::domain::{MAXIMUM_STIMULATION_FREQUENCY, Range};
 use crate::error::ParameterError;
 use crate::muscle::Fiber;
 use crate::params::MuscleParams;
@@ -48,6 +48,15 @@ struct Unit<S: Scalar> {
 
 summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
+impl<S: Scalar, const N: usize> Coefficients<S, N> {
+    /// f_env of the first type, f0.5.
+    fn first_frequency(&self, stimulation_frequency: S::Quantity) -> S {
+        self.units.first().map_or(S::ZERO, |unit| {
+            S::of_quantity(stimulation_frequency, &unit.per_half_force_frequency)
+        })
+    }
+}
+
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = true;
 
@@ -79,9 +88,10 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         fibers: &[Fiber<S>; N],
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError> {
+        let highest = self.first_frequency(S::quantity(MAXIMUM_STIMULATION_FREQUENCY));
+        let first_frequency = Range { least: S::ZERO, most: highest };
         // The two lags carry the recruitment.
-        let none = Range { least: S::ZERO, most: S::ZERO };
-        LumpedState::restored(fibers, saved, none, [super::share(); N])
+        LumpedState::restored(fibers, saved, first_frequency, [super::share(); N])
     }
 
     #[inline(always)]
@@ -94,8 +104,12 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     ) {
         let input = &moment.input;
         let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
-        let kept = state.fibers.iter_mut().zip(&mut state.activations);
-        for (((unit, (kept, foreseen)), fiber), yieldings) in
+        // Af takes the frequency as it is: where that steps, so does Af.
+        let first = self.first_frequency(input.stimulation_frequency);
+        let jumps = first != S::of(state.shared);
+        state.shared = first.slow();
+        let kept = state.fibers.iter_mut();
+        for (((unit, kept), fiber), yieldings) in
             self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
         {
             let frequency =
@@ -115,17 +129,18 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
                 &fiber.activation.at(moment.reciprocal),
                 &mut kept.sag,
                 *yieldings,
-                Course::constant(frequency),
+                frequency,
                 if frequency > self.firing { S::ONE } else { S::ZERO },
-                moment.travel,
             );
-            *foreseen = activation.next_share();
-            let weight = Course {
-                middle: unit.fraction * excited.effective_at_middle,
-                change: unit.fraction * (S::of(excited.effective) - S::of(before)),
+            let weight = unit.fraction * excited.effective_at_middle;
+            let recruitment = Recruited {
+                activation,
+                weight,
+                change_after_jump: jumps
+                    .then(|| unit.fraction * (S::of(excited.effective) - S::of(before))),
+                compression_weight: unit.fraction,
             };
-            let compression_weight = Course::constant(unit.fraction);
-            recruited(fiber, Recruited { activation, weight, compression_weight });
+            recruited(fiber, recruitment);
         }
     }
 }

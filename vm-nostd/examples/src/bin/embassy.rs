@@ -12,7 +12,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use lm3s6965 as _;
 use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
-use vm_nostd::{ContinuousMuscle, FiberParams, Fixed, Input, MuscleParams, TimeStep};
+use vm_nostd::{Class, ContinuousMuscle, FiberParams, Fixed, Input, MuscleParams, TimeStep};
 
 const PARAMS: MuscleParams<2> = MuscleParams {
     mass: 97.5e-3,
@@ -20,6 +20,7 @@ const PARAMS: MuscleParams<2> = MuscleParams {
     tendon_length: 0.02,
     max_path_length: 0.184,
     recruitment_saturation: 0.8,
+    class: Class::Standard,
     elements: ELEMENTS,
     fibers: [
         FiberParams { fraction: 0.6, fiber_type: SLOW },

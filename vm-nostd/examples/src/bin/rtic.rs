@@ -10,7 +10,7 @@ mod app {
     use cortex_m::peripheral::syst::SystClkSource;
     use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
     use vm_nostd::{
-        FesMuscle, FiberParams, Fixed, Input, IntramuscularFes, MuscleParams, State, TimeStep,
+        Class, FesMuscle, FiberParams, Fixed, Input, IntramuscularFes, MuscleParams, State, TimeStep,
     };
 
     const PARAMS: MuscleParams<2> = MuscleParams {
@@ -19,6 +19,7 @@ mod app {
         tendon_length: 0.02,
         max_path_length: 0.184,
         recruitment_saturation: 0.8,
+        class: Class::Standard,
         elements: ELEMENTS,
         fibers: [
             FiberParams { fraction: 0.6, fiber_type: SLOW },
