@@ -13,7 +13,7 @@ pub const TYPES: usize = 2;
 
 /// A mode that the property tests drive muscles in.
 pub trait Mode<S: Scalar>: Recruitment<S, TYPES> {
-    /// What it needs to know of a muscle besides its parameters.
+    /// Data of a muscle besides its parameters.
     fn units(params: &MuscleParams<TYPES>) -> Self::Units;
 }
 

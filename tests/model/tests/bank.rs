@@ -1,4 +1,4 @@
-//! A bank of muscles does what its muscles do by themselves.
+//! A bank gives the same bits as its muscles alone.
 
 use firmware::{Arithmetic, Inputs, MUSCLE, Scenario};
 use vm_nostd::{

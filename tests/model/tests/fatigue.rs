@@ -87,7 +87,7 @@ proptest! {
     }
 }
 
-/// Saved and restored in mid-run, it goes on with the same bits; what no tick leaves is refused.
+/// A restored state continues with the same bits; invalid states are refused.
 fn saved<S: Scalar>() {
     let fatigue = Fatigue::<S>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)
         .expect("a muscle that tires");

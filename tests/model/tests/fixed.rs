@@ -122,7 +122,7 @@ fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
         })
 }
 
-/// Anything that the bits of an input can be, and often what is inside the domain.
+/// Any bits as inputs, biased towards the domain.
 fn any_bits() -> impl Strategy<Value = (i32, i32, i32)> {
     let activation = prop_oneof![any::<i32>(), 0..=1_i32 << 24, Just(i32::MIN), Just(i32::MAX)];
     let path = prop_oneof![any::<i32>(), 0..300_000_000_i32, Just(i32::MIN), Just(i32::MAX)];

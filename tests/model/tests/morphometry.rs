@@ -99,7 +99,7 @@ fn mild<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> (Vec<f64>, St
     let muscle = Muscle::<S, R, TYPES>::build_with_units(params, &R::units(params), step)
         .unwrap_or_else(|error| panic!("{error}: {params:?}"));
     let tendon = params.elements.tendon.slack_length + 0.02;
-    // The same for all: what `Fixed` holds exactly, and `f32` nearly.
+    // The same inputs for all: exact in `Fixed`, nearly exact in `f32`.
     let path = |fascicle: f64| {
         let metres = tendon * params.tendon_length + fascicle * params.fascicle_length;
         S::path_length((metres * 1e6).round() * 1e-6)
@@ -130,7 +130,7 @@ fn worst(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// What fixed point may add to what `f32` does, F0: a tenth of what is promised.
+/// Error that fixed point may add to that of `f32`, F0: a tenth of the promise.
 const ADDED: f64 = 1e-4;
 
 fn as_accurate_as_f32<R: Mode<f64> + Mode<f32> + Mode<Fixed>>(
@@ -214,7 +214,7 @@ fn forces_of_a_muscle_of_one_newton_are_told_to_a_ten_thousandth_of_it() {
     let (exact, _) = mild::<f64, NaturalContinuous>(&params, step);
     let (fixed, _) = mild::<Fixed, NaturalContinuous>(&params, step);
     assert!(worst(&fixed, &exact) < 1e-4, "{}", worst(&fixed, &exact));
-    // What moves slowly moves by less than that from tick to tick, and not in steps of mN.
+    // A slow force changes by less per tick, and not in steps of 1 mN.
     let mut changes: Vec<f64> = fixed.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     changes.retain(|change| *change > 0.0);
     assert!(changes.len() > fixed.len() / 2, "{} of {}", changes.len(), fixed.len());

@@ -87,7 +87,7 @@ fn drive<R: Mode<f32>>(
 
 fn stays_in_range<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Segment]) {
     let muscle = built::<f32, R>(params, step);
-    // What the muscle pulls with at rest on its longest path comes on top.
+    // Plus the passive force on the longest path.
     let at_rest = muscle.rest(path_range(params).1).expect("a path in range");
     let most = 3.0 * params.max_isometric_force() as f32 + muscle.observe(&at_rest).force;
     let of_state = Status::FASCICLE_OUTSIDE_DOMAIN
@@ -261,7 +261,7 @@ proptest! {
             turnover += done.abs();
             before = (force, path_length);
         }
-        // What the trapezoid rule makes of a force that rings within a tick is not energy.
+        // The trapezoid rule is invalid for a force that rings within a tick.
         prop_assert!(work >= -1e-3 * turnover, "{work} J of {turnover} J");
     }
 }

@@ -27,7 +27,7 @@ fn curves() -> impl Strategy<Value = RecruitmentCurveParams> {
     )
 }
 
-/// Error of U: that of what is rounded, times how steep the curve is by it.
+/// Error of U: rounding error of the input times the slope of the curve.
 fn bound(p: &RecruitmentCurveParams, amplitude: f64, unit: f64, amplitude_unit: f64) -> f64 {
     let per_strength = p.slope * p.saturation / (p.saturation - p.threshold);
     let relative = amplitude / (p.saturation * 1e3);
@@ -91,7 +91,7 @@ proptest! {
         share in 0.0..2.0_f64,
         width in 5.0..5000.0_f64,
     ) {
-        // About where the curve rises, and within what a pulse may be.
+        // Around the rise of the curve, within the limits of a pulse.
         let amplitude = share * p.saturation * 1e3 * (1.0 + p.chronaxie * 1e6 / width);
         let amplitude = amplitude.min(500.0).min(p.saturation * 99e3);
         check::<f32>(&p, (amplitude, width), 2_f64.powi(-24), amplitude * 2_f64.powi(-23))?;

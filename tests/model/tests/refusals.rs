@@ -44,7 +44,7 @@ fn types_whose_force_falls_with_velocity_somewhere_are_refused() {
         Some(("force_velocity.shortening: cV0 + cV1 L", Some(1))),
         Some(("force_velocity.lengthening: aV0 + aV1 L + aV2 L²", Some(1))),
     );
-    // Only at the longest: what is asked of the shortest is another refusal.
+    // Only at the longest: the shortest has another refusal.
     let slope = -2.0 / longest;
     assert_eq!(refused(Some([1.0, slope]), None), on_shortening);
     assert_eq!(refused(Some([1.1, slope]), None), None);

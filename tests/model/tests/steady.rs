@@ -27,7 +27,7 @@ fn there_and_back<S: Scalar>(
     (activation, path, frequency): (f64, f64, f64),
     unit: f64,
 ) -> Result<(), TestCaseError> {
-    // Fixed point refuses what it cannot hold.
+    // Fixed point refuses unrepresentable muscles.
     let Ok(steady) = SteadyFes::<S, TYPES>::build(params) else { return Ok(()) };
     let (shortest, longest) = params.path_domain();
     let path = shortest + path * (longest - shortest);
@@ -39,11 +39,11 @@ fn there_and_back<S: Scalar>(
     let again = steady.force(vm_nostd::Input { activation: back.activation, ..input });
     let difference = (S::newtons(again.force) - S::newtons(there.force)).abs();
     // In fixed point a force is told to 1 mN, and the tendon's extension to 6e-8 L_ce0.
-    // Where nothing more can be held, what is held may be as far away as counts as held.
+    // At the limit of reachable forces, within the tolerance of reachability.
     let ends = if activation == 0.0 || activation > 0.999_999 { 1e-4 } else { 0.0 };
     let most = (unit + ends) * f0 + 2e-3;
     prop_assert!(difference <= most, "{:e} F0 {:?} {:?}", difference / f0, there, back);
-    // What is held can be held.
+    // A held force is reachable.
     prop_assert!(!back.status.contains(Status::FORCE_UNREACHABLE), "{:?} {:?}", there, back);
     Ok(())
 }
@@ -63,7 +63,7 @@ proptest! {
     }
 }
 
-/// What cannot be held is flagged, with the nearest that can.
+/// An unreachable force is flagged, with the nearest reachable one.
 fn unreachable<S: Scalar>() {
     let steady = SteadyFes::<S, 2>::build(&MUSCLE).expect("a muscle");
     let (path, frequency) = (S::path_length(0.16), S::quantity(20.0));

@@ -20,7 +20,7 @@ pub enum ClientError {
     },
     /// It was not understood.
     NotActedUpon(LinkError),
-    /// What came back answers something else.
+    /// The answer is of another kind.
     OtherAnswer,
     /// Nothing came back.
     Silence,
@@ -41,7 +41,7 @@ enum Heard {
     Nothing,
 }
 
-/// What this host adds to a session's number: always the same, as on a tape.
+/// This host's nonce: constant, as in a recording.
 pub const NONCE: u32 = 0x5EED_1E55;
 /// How often a greeting is repeated.
 const GREETINGS: usize = 10;
@@ -63,12 +63,12 @@ impl<L: Read + Write> Client<L> {
         self.line
     }
 
-    /// What rows have led to, if that has come.
+    /// Next received output of a row.
     pub fn next_trace(&mut self) -> Option<Traced> {
         self.traces.pop_front()
     }
 
-    /// Takes what comes until nothing does, or until an answer came.
+    /// Reads until nothing comes or an answer has come.
     pub fn listen(&mut self) {
         self.hear();
     }
@@ -112,7 +112,7 @@ impl<L: Read + Write> Client<L> {
         for _ in 0..GREETINGS {
             let sequence = self.sequence;
             self.sequence = sequence.wrapping_add(1);
-            // A zero ends what may have been left on the line.
+            // A zero ends a partial frame on the line.
             self.send_raw(&[0]);
             self.send_raw(
                 &encode(NO_SESSION, sequence, &Request::Hello { nonce: NONCE }).expect("a frame"),
@@ -161,7 +161,7 @@ fn owned(answer: Answer<'_>) -> Result<Answer<'static>, ClientError> {
     })
 }
 
-/// Of numbers field, value and limit; of all else what it is called.
+/// Field, value and limit of a number; otherwise the name.
 fn reason(refusal: &Refusal<'_>) -> String {
     match refusal {
         Refusal::Parameter { field, fiber, value, limit } => {

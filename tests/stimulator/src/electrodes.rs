@@ -1,4 +1,4 @@
-//! A converter and pins that say what is at the electrodes.
+//! A fake converter and pins that record the electrodes.
 
 use embedded_hal::digital::{ErrorType as PinErrorType, OutputPin};
 use embedded_hal::spi::{ErrorKind, ErrorType as SpiErrorType, Operation, SpiDevice};
@@ -11,7 +11,7 @@ pub const CHANNELS: usize = 4;
 /// 50 mA by twelve bits.
 pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
 
-/// What is at the electrodes, and what was wrong on the way.
+/// State of the electrodes, and violations so far.
 #[derive(Debug, Default)]
 pub struct Electrodes {
     /// Of the converter.
@@ -24,7 +24,7 @@ pub struct Electrodes {
     pub channels: [bool; CHANNELS],
     /// Counts times µs that went through each channel.
     pub charges: [i64; CHANNELS],
-    /// What must not be.
+    /// Violations.
     pub problems: Vec<String>,
     /// Words to the converter since a step began.
     pub words: u32,
@@ -142,7 +142,7 @@ impl SpiDevice for Converter {
 /// A stage on fakes.
 pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
-/// A stage, and what it drives.
+/// An output stage with its electrodes.
 pub fn stage() -> (Stage, Shared) {
     let shared = Shared::default();
     // As after a reset that came at the worst moment.

@@ -1,4 +1,4 @@
-//! A host at the other end of a device's line, and what it mostly asks for.
+//! A host at the other end of a device's line, with common requests.
 
 use crate::client::Client;
 use crate::device::{InProcess, Memory};
@@ -29,7 +29,7 @@ pub fn booted() -> Host {
     host
 }
 
-/// What the device says of itself.
+/// Report of the device.
 pub fn report(host: &mut Host) -> Report {
     match host.ask(&Request::Report).expect("an answer") {
         Answer::Report(report) => report,

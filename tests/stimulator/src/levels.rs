@@ -20,7 +20,7 @@ use vm_nostd::TimeStep;
 /// A tick, µs.
 pub const TICK: u32 = 1000;
 
-/// What runs; a greater one interrupts.
+/// Interrupt levels; a greater one interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     /// Set-up, which nothing interrupts.
@@ -30,7 +30,7 @@ enum Level {
     Link,
 }
 
-/// What the firmware has as statics.
+/// The firmware's statics.
 #[derive(Default)]
 struct Statics {
     plans: PlanQueue,
@@ -53,10 +53,10 @@ self_cell!(
     }
 );
 
-/// All three levels, what they do to the electrodes, and what must not be.
+/// All three levels, the electrodes, and violations.
 pub struct Levels {
     firmware: Firmware,
-    /// What a patient feels.
+    /// The electrodes.
     pub electrodes: Shared,
     level: Cell<Level>,
     /// Interrupts that may still come where they are chosen to.
@@ -76,9 +76,9 @@ pub struct Levels {
     receiver: RefCell<Receiver>,
     session: Cell<SessionNumber>,
     sequence: Cell<u16>,
-    /// What the host was told, in order.
+    /// Messages to the host, in order.
     pub answers: RefCell<Vec<(u16, Answer<'static>)>>,
-    /// What rows have led to, in order.
+    /// Outputs of rows, in order.
     pub traces: RefCell<Vec<Traced>>,
 }
 
@@ -152,7 +152,7 @@ impl Levels {
         self.tick_interrupts.set(tick_interrupts);
     }
 
-    /// What must not be, if it was.
+    /// Violation, if any.
     pub fn problem(&self) -> Option<String> {
         self.problem.borrow().clone()
     }
@@ -219,7 +219,7 @@ impl Levels {
         self.late.set(true);
     }
 
-    /// A tick, after all that the pulse timer does before, and with what it calls for.
+    /// A tick, with the pulse timer's steps before it and the interrupt it triggers.
     pub fn tick(&self) {
         self.catch_up();
         self.ticks.update(|before| before + 1);
@@ -249,7 +249,7 @@ impl Levels {
         self.pulse();
     }
 
-    /// Ticks, and what the pulse timer does until the next.
+    /// Ticks, with the pulse timer's steps between them.
     pub fn pass(&self, ticks: u32) {
         for _ in 0..ticks {
             self.tick();
@@ -302,7 +302,7 @@ impl Levels {
         self.at(Level::Link, |tasks| tasks.server.borrow_mut().receive(*last));
     }
 
-    /// The link looks for what there is to say, and says it.
+    /// The link polls and sends.
     pub fn poll(&self) {
         self.at(Level::Link, |tasks| tasks.server.borrow_mut().poll());
         while let Some(byte) = self.at(Level::Alone, |tasks| tasks.server.borrow_mut().transmit()) {

@@ -1,4 +1,4 @@
-//! Changes that somebody made on purpose and no test noticed: each has one now. `tests/planted` has
+//! One test for each change that once went unnoticed. `tests/planted` has
 //! the changes.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -152,7 +152,7 @@ fn a_fault_of_a_moment_between_the_two_steps_of_arming_is_not_missed() {
     assert_eq!(after(|o| o.memory_is_intact = false), State::Latched(Fault::Checksum));
     assert_eq!(after(|o| o.in_time = false), State::Latched(Fault::Deadline));
     assert_eq!(after(|o| o.output_answers = false), State::Latched(Fault::Output));
-    // What is there still when somebody arms is seen then.
+    // A fault that persists is detected when arming.
     let supply = after(|o| o.supply_mv = 0);
     assert!(matches!(supply, State::Acknowledged { fault: Fault::Boot, .. }), "{supply:?}");
 }
@@ -223,7 +223,7 @@ fn a_demand_that_is_equal_to_its_limit_is_allowed() {
     }
 }
 
-/// The same of what is observed: both ends of each range are in it.
+/// The same for observations: both ends of each range are allowed.
 #[test]
 fn a_reading_that_is_equal_to_its_limit_is_right() {
     let state = |change: fn(&mut Observed)| {
@@ -295,7 +295,7 @@ fn generations_of_slots_go_round() {
         let mut buffer = [0; _];
         let mut slots = Slots::new(memory, &mut buffer);
         assert_eq!(slots.load(), Some(newest.as_bytes()), "{first:x} {second:x}");
-        // What is stored next is newer than both.
+        // The next content is newer than both.
         slots.store(b"third").expect("memory");
         assert_eq!(slots.load(), Some(b"third".as_slice()), "{first:x} {second:x}");
     }

@@ -1,4 +1,4 @@
-//! What the chip's flash, watchdog and noise generator do on a bad day, as their manual has it:
+//! Failures of the chip's flash, watchdog and noise generator, per their manual:
 //! parts in this process that stay busy, keep flags of old errors, or never take a change.
 
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
@@ -17,9 +17,9 @@ const SECTOR: usize = BYTES / 2;
 /// A part's flash.
 struct Part {
     kept: Vec<u8>,
-    /// What its data cache holds: sixteen bytes each.
+    /// Lines of its data cache, sixteen bytes each.
     cached: std::cell::RefCell<HashMap<usize, Vec<u8>>>,
-    /// Its clock, which only runs where somebody looks at it.
+    /// Its clock, which advances when polled.
     counts: Cell<u32>,
     clock_runs: bool,
     busy_until: u32,
@@ -27,7 +27,7 @@ struct Part {
     error: bool,
     stuck_error: bool,
     patient_from: u32,
-    /// What the next operations do instead of what they are to.
+    /// Failures of the next operations.
     fails: VecDeque<Fails>,
     operations: usize,
 }
@@ -152,7 +152,7 @@ fn a_flag_of_an_earlier_error_does_not_fail_what_comes_after_it() {
     let mut bytes = [0; 4];
     flash.read(15, &mut bytes).expect("inside");
     assert_eq!(bytes, [0xff, 1, 2, 3]);
-    // An error of its own is said, once.
+    // Its own error is reported once.
     flash.controller().fails = [Fails::WithFlag].into();
     assert_eq!(flash.write(32, &[4]), Err(FlashError::Failed));
     assert_eq!(flash.write(32, &[4]), Ok(()));
@@ -257,7 +257,7 @@ fn why_something_was_not_stored_is_named() {
     }
 }
 
-/// A watchdog whose registers take a change after so many looks at them, and that counts by itself.
+/// A watchdog whose registers take an update after some polls.
 #[derive(Debug)]
 struct Registers {
     runs: bool,
@@ -328,7 +328,7 @@ fn the_watchdogs_registers_are_changed_one_after_the_other_and_fed_when_a_change
             assert_eq!(dog.feed(armed), Ok(()), "{looks} looks, tick {tick}");
             assert!(!(armed && dog.is_patient()), "patient while armed, tick {tick}");
         }
-        // What is said to be in force is.
+        // The reported timeout is in force.
         for armed in [false, true, false] {
             // The change before may still be under way.
             for _ in 0..2 * looks + 3 {
@@ -395,7 +395,7 @@ fn patience_is_enough_at_the_fastest_oscillator() {
     }
 }
 
-/// The README says what is computed here.
+/// The README has these numbers.
 #[test]
 fn the_readme_has_these_numbers() {
     let readme = include_str!("../../../firmware/README.md");
@@ -412,12 +412,12 @@ fn the_readme_has_these_numbers() {
     }
 }
 
-/// A generator with a script: what it says of itself at each look, and what it gives.
+/// A generator with scripted flags and numbers.
 struct Script {
     looks: VecDeque<NoiseStatus>,
     numbers: VecDeque<u32>,
     restarts: u32,
-    /// What it says when the script is over.
+    /// Flags after the script.
     then: NoiseStatus,
     looked: u32,
 }
