@@ -1,8 +1,8 @@
 //! The tick's half of the stimulator: supervision and the plan of pulses.
 
-use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::limits::{LimitError, Limits};
+use crate::permission::Permission;
 use crate::plan::Plan;
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
 use crate::shared::Giver;
@@ -14,7 +14,7 @@ pub struct Controller<'q> {
     supervisor: Supervisor,
     scale: Guarded<Scale>,
     plans: Giver<'q, Guarded<Plan<CHANNELS>>>,
-    gate: &'q Gate,
+    permission: &'q Permission,
     /// Last plan given to the pulse timer.
     told: Plan<CHANNELS>,
 }
@@ -28,13 +28,13 @@ impl<'q> Controller<'q> {
         boot: Fault,
         scale: Scale,
         plans: Producer<'q, Guarded<Plan<CHANNELS>>>,
-        gate: &'q Gate,
+        permission: &'q Permission,
     ) -> Result<Self, LimitError> {
         Ok(Self {
             supervisor: Supervisor::new(limits, tick_us, &scale, boot)?,
             scale: Guarded::new(scale),
             plans: Giver(plans),
-            gate,
+            permission,
             told: Plan::NOTHING,
         })
     }
@@ -56,14 +56,14 @@ impl<'q> Controller<'q> {
 
     /// Whether the host was heard since the last call.
     pub(crate) fn take_heard(&self) -> bool {
-        self.gate.take_heard()
+        self.permission.take_heard()
     }
 
     /// See [`Supervisor::acknowledge`]. Clears earlier late ticks.
     pub fn acknowledge(&mut self, seen: Fault) -> Result<(), NotArmed> {
         self.supervisor.acknowledge(seen)?;
-        self.gate.set_late(false);
-        self.gate.set_plan_lost(false);
+        self.permission.set_late(false);
+        self.permission.set_plan_lost(false);
         Ok(())
     }
 
@@ -76,7 +76,7 @@ impl<'q> Controller<'q> {
     pub fn fail(&mut self, fault: Fault) {
         self.supervisor.fail(fault);
         self.told = Plan::NOTHING;
-        self.gate.set_open(self.state() == State::Armed);
+        self.permission.set_open(self.state() == State::Armed);
     }
 
     /// A flipped bit in the scale, for tests.
@@ -91,25 +91,25 @@ impl<'q> Controller<'q> {
     pub fn tick(&mut self, observed: &Observed, requested: &Requested) -> bool {
         let scale = self.scale.get().copied();
         let observed = Observed {
-            in_time: observed.in_time && !self.gate.is_late(),
-            output_answers: observed.output_answers && !self.gate.output_failed(),
+            in_time: observed.in_time && !self.permission.is_late(),
+            output_answers: observed.output_answers && !self.permission.output_failed(),
             memory_is_intact: observed.memory_is_intact
-                && !self.gate.is_plan_lost()
+                && !self.permission.is_plan_lost()
                 && scale.is_some(),
             ..*observed
         };
         self.supervisor.tick(&observed, requested);
         if self.state() == State::Armed {
-            // Before the plan: a pulse timer that finds the gate closed discards its plans.
-            self.gate.renew();
-            self.gate.set_open(true);
+            // Before the plan: a pulse timer that finds the permission closed discards its plans.
+            self.permission.renew();
+            self.permission.set_open(true);
             self.tell(requested, scale);
         }
         let armed = self.state() == State::Armed;
         if !armed {
             // The pulse timer discards it, too.
             self.told = Plan::NOTHING;
-            self.gate.set_open(false);
+            self.permission.set_open(false);
         }
         armed
     }

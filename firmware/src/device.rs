@@ -3,11 +3,11 @@
 use crate::configuration::{MUSCLES, TICK_US};
 use crate::controller::Controller;
 use crate::deadline::Deadline;
-use crate::driven::Demand;
 use crate::guarded::{Guarded, Sum};
 use crate::limits::Limits;
-use crate::lines::{Order, Outcome, Stimuli, TickEnds};
 use crate::link::{Readings, Report, RowOutputs, Traced};
+use crate::link_queues::{Order, Outcome, Stimuli, TickEnds};
+use crate::placed_muscle::Demand;
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested};
 
 /// Requests for current, with their age.
@@ -86,8 +86,8 @@ impl<'q> Device<'q> {
         }
         self.obey();
         let mut memory_is_intact = true;
-        for driven in self.ends.muscles.iter_mut().flatten() {
-            memory_is_intact &= driven.check();
+        for placed in self.ends.muscles.iter_mut().flatten() {
+            memory_is_intact &= placed.check();
         }
         self.advance();
         let limits = self.controller.limits().copied();
@@ -244,7 +244,7 @@ impl<'q> Device<'q> {
                 frames: Default::default(),
             }),
             Order::Words(place) => match self.ends.muscles.get(place) {
-                Some(Some(driven)) => Outcome::Words(driven.words()),
+                Some(Some(placed)) => Outcome::Words(placed.words()),
                 _ => Outcome::Empty,
             },
         }
@@ -263,9 +263,9 @@ impl<'q> Device<'q> {
         let inputs = row.get().into_iter().flatten();
         let places = self.ends.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
         for (((muscle, inputs), output), demand) in places {
-            let Some(driven) = muscle else { continue };
-            *output = driven.step(inputs);
-            *demand = driven.demand(inputs);
+            let Some(placed) = muscle else { continue };
+            *output = placed.step(inputs);
+            *demand = placed.demand(inputs);
         }
         self.demand = Aged::new(demands);
         let _there_is_room = self.ends.traces.enqueue(Traced { row: self.rows, outputs });

@@ -55,7 +55,7 @@ pub enum Fault {
 
 impl Fault {
     /// Transient fault: latched while acknowledged, because arming checks only the latest tick.
-    pub(crate) fn is_of_a_moment(self) -> bool {
+    pub(crate) fn is_transient(self) -> bool {
         matches!(self, Self::Checksum | Self::Deadline | Self::Output)
     }
 }

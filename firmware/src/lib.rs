@@ -7,8 +7,8 @@
 //! 2. hard tick: [`Device`] steps the muscles and supervises;
 //! 3. link: [`Server`] takes a host's requests and returns the muscles' outputs.
 //!
-//! Between the first two are a queue of [`Plan`]s and a [`Gate`], between the last two the queues
-//! of [`Lines`].
+//! Between the first two are a queue of [`Plan`]s and a [`Permission`], between the last two the
+//! queues of [`LinkQueues`].
 #![no_std]
 
 #[cfg(any(test, feature = "explore"))]
@@ -18,17 +18,17 @@ mod configuration;
 mod controller;
 mod deadline;
 mod device;
-mod driven;
 #[cfg(feature = "board")]
 pub mod end;
 mod fault;
 pub mod flash;
-mod gate;
 mod guarded;
 mod limits;
-mod lines;
 pub mod link;
+mod link_queues;
 mod output;
+mod permission;
+mod placed_muscle;
 mod plan;
 mod pulses;
 mod ram;
@@ -49,11 +49,11 @@ pub use configuration::{MUSCLES, TICK_US, TYPES};
 pub use controller::Controller;
 pub use deadline::Deadline;
 pub use device::Device;
-pub use gate::Gate;
 pub use guarded::{Guarded, Sum};
 pub use limits::{LimitError, Limits};
-pub use lines::{Banks, Lines, LinkEnds, TickEnds};
+pub use link_queues::{Banks, LinkEnds, LinkQueues, TickEnds};
 pub use output::{Bridge, OutputError, OutputStage};
+pub use permission::Permission;
 pub use plan::{Plan, PlanQueue};
 pub use pulses::Pulses;
 pub use ram::RamFlash;

@@ -1,9 +1,10 @@
 //! Limits of output, of the age of inputs, and of the duration of stimulation.
 //!
-//! The values follow IEC 60601-2-10:2012 for stimulators in physical medicine: at most 300 mJ per pulse into 500 Ω,
-//! 50 mA r.m.s. up to 400 Hz, and particular care above 2 mA r.m.s. per cm² of electrode. This is no claim of
-//! conformity, which a module cannot have. Implanted electrodes, as in intramuscular FES, are outside that standard:
-//! their limit is the charge per phase that the electrode bears.
+//! The values follow IEC 60601-2-10:2012 for stimulators in physical medicine: at most 300 mJ per
+//! pulse into 500 Ω, 50 mA r.m.s. up to 400 Hz, and particular care above 2 mA r.m.s. per cm² of
+//! electrode. This is no claim of conformity, which a module cannot have. Implanted electrodes, as
+//! in intramuscular FES, are outside that standard: their limit is the charge per phase that the
+//! electrode bears.
 
 use crate::guarded::Sum;
 use crate::stimulus::{
@@ -30,33 +31,36 @@ pub struct Limits {
     pub charge_nc: u32,
     /// Root mean square of a channel's current, µA; 1 to `amplitude_ua`.
     pub rms_ua: u32,
-    /// Greatest rise of amplitude from one pulse of a channel to the next, µA; eight steps of the current source to
-    /// `amplitude_ua`. Faster requests are slowed down, without a fault.
+    /// Greatest rise of amplitude from one pulse of a channel to the next, µA; eight steps of the
+    /// current source to `amplitude_ua`. Faster requests are slowed down, without a fault.
     pub rise_ua: u32,
-    /// Longest stimulation without a rest, ms; a tick or more. Stopping and arming again does not reset it.
+    /// Longest stimulation without a rest, ms; a tick or more. Stopping and arming again does not
+    /// reset it.
     pub session_ms: u32,
-    /// A pause without stimulation that begins a new session, ms; a tick or more. It counts from when the next pulse
-    /// would have come.
+    /// A pause without stimulation that begins a new session, ms; a tick or more. It counts from
+    /// when the next pulse would have come.
     pub rest_ms: u32,
     /// Longest silence of the host, ms; a tick or more.
     pub silence_ms: u32,
-    /// Greatest age of a reading of the path, ms; a tick or more. An older one counts as missing, which is a fault.
+    /// Greatest age of a reading of the path, ms; a tick or more. An older one counts as missing,
+    /// which is a fault.
     pub readings_ms: u32,
     /// Greatest age of a row that stimulates, ms; a tick or more.
     pub rows_ms: u32,
     /// Greatest age of a drive, ms; a tick or more. Hosts repeat drives.
     pub drives_ms: u32,
-    /// Impedance of each electrode that stimulates, Ω: below is a short, above an open electrode. An electrode that was
-    /// not measured yet is allowed, because measuring takes pulses.
+    /// Impedance of each electrode that stimulates, Ω: below is a short, above an open electrode.
+    /// An electrode that was not measured yet is allowed, because measuring takes pulses.
     pub impedance_ohm: (u32, u32),
     /// Supply, mV.
     pub supply_mv: (u32, u32),
     /// Path length of the muscle, µm.
     pub path_um: (i32, i32),
-    /// Greatest speed of the path from one reading to the next, mm/s; 1 or more. Time is counted between the ticks of
-    /// the readings, and a change of 1 µm is always allowed.
+    /// Greatest speed of the path from one reading to the next, mm/s; 1 or more. Time is counted
+    /// between the ticks of the readings, and a change of 1 µm is always allowed.
     pub path_speed_mm_s: u32,
-    /// Longest stimulation with a constant reading (to the µm), ms; a tick to `session_ms`. A working sensor has noise.
+    /// Longest stimulation with a constant reading (to the µm), ms; a tick to `session_ms`. A
+    /// working sensor has noise.
     pub stuck_ms: u32,
 }
 
@@ -83,8 +87,8 @@ impl fmt::Display for LimitError {
 impl core::error::Error for LimitError {}
 
 impl Limits {
-    /// For surface electrodes of 25 cm² and adults: 20 mA r.m.s. are 0.8 mA/cm², and 40 µC at 100 mA no more than
-    /// 4 mJ in 500 Ω, both phases.
+    /// For surface electrodes of 25 cm² and adults: 20 mA r.m.s. are 0.8 mA/cm², and 40 µC at 100
+    /// mA no more than 4 mJ in 500 Ω, both phases.
     pub const SURFACE: Self = Self {
         amplitude_ua: 100_000,
         width_us: 500,
@@ -115,8 +119,8 @@ impl Limits {
         self
     }
 
-    /// Validates the limits for a tick time (µs) and scale, and against each other; the error has field, value and
-    /// limit.
+    /// Validates the limits for a tick time (µs) and scale, and against each other; the error has
+    /// field, value and limit.
     pub const fn validate(&self, tick_us: u32, scale: &Scale) -> Result<(), LimitError> {
         let amplitude = self.amplitude_ua as i64;
         let tick_ms = tick_us.div_ceil(1000) as i64;

@@ -21,8 +21,8 @@ mod app {
     use defmt_rtt as _;
     use firmware::safety::Fault;
     use firmware::{
-        Banks, Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server,
-        ServerRoom, TICK_US,
+        Banks, Controller, Deadline, Device, Limits, LinkQueues, Permission, PlanQueue, Pulses,
+        Server, ServerRoom, TICK_US,
     };
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;
@@ -53,17 +53,18 @@ mod app {
 
     /// Puts the outputs in neutral first. Large values are built in place, not on the stack.
     #[init(local = [
-        gate: Gate = Gate::new(),
+        permission: Permission = Permission::new(),
         plans: PlanQueue = Queue::new(),
-        lines: Lines = Lines::new(),
+        link_queues: LinkQueues = LinkQueues::new(),
         banks: Banks = Banks::new(),
         bytes: Queue<Received, WAITING> = Queue::new(),
         room: ServerRoom = ServerRoom::new(),
         flash: EmulatedFlash = EmulatedFlash::new(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
-        let init::LocalResources { gate, plans, lines, banks, bytes, room, flash, .. } =
-            context.local;
+        let init::LocalResources {
+            permission, plans, link_queues, banks, bytes, room, flash, ..
+        } = context.local;
         let Board {
             stage,
             mut pulse_timer,
@@ -78,15 +79,16 @@ mod app {
         // Without an output stage that answers there is nothing to do; it may after a restart.
         let Some(stage) = stage else { board::reset() };
         let Ok(step) = TimeStep::from_seconds(f64::from(TICK_US) * 1e-6) else { board::reset() };
-        let gate: &'static Gate = gate;
+        let permission: &'static Permission = permission;
         let (give_plan, take_plan) = plans.split();
-        let (tick_ends, link_ends) = lines.split(banks);
+        let (tick_ends, link_ends) = link_queues.split(banks);
         let (received, arrived) = bytes.split();
-        let Ok(controller) = Controller::new(LIMITS, TICK_US, boot, SCALE, give_plan, gate) else {
+        let Ok(controller) = Controller::new(LIMITS, TICK_US, boot, SCALE, give_plan, permission)
+        else {
             board::reset()
         };
         let deadline = Deadline::new(TICK_US, TickTimer::COUNTS_PER_US);
-        let server = Server::new(room, link_ends, gate, memory, numbers, step);
+        let server = Server::new(room, link_ends, permission, memory, numbers, step);
         defmt::info!("a tick of {=u32} us", TICK_US);
         if boot == Fault::Watchdog {
             defmt::warn!("started again by the watchdog");
@@ -94,7 +96,7 @@ mod app {
         pulse_timer.start();
         tick_timer.start();
         let local = Local {
-            pulses: Pulses::new(stage, take_plan, gate, TICK_US),
+            pulses: Pulses::new(stage, take_plan, permission, TICK_US),
             pulse_timer,
             device: Device::new(controller, tick_ends, deadline),
             tick_timer,

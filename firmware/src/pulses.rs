@@ -1,8 +1,8 @@
 //! The pulse timer's half of the stimulator, at the highest priority.
 
-use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::output::OutputStage;
+use crate::permission::Permission;
 use crate::plan::Plan;
 use crate::safety::CHANNELS;
 use crate::schedule::{Schedule, Step};
@@ -19,7 +19,7 @@ pub struct Pulses<'q, D, P> {
     stage: OutputStage<D, P, CHANNELS>,
     schedule: Schedule<CHANNELS>,
     plans: Taker<'q, Guarded<Plan<CHANNELS>>>,
-    gate: &'q Gate,
+    permission: &'q Permission,
     /// Duration of a tick's permission, µs.
     patience_us: u32,
     /// Longest possible time since the last permission, µs.
@@ -48,7 +48,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     pub fn new(
         stage: OutputStage<D, P, CHANNELS>,
         plans: Consumer<'q, Guarded<Plan<CHANNELS>>>,
-        gate: &'q Gate,
+        permission: &'q Permission,
         tick_us: u32,
     ) -> Self {
         let patience_us = PATIENCE_TICKS * tick_us;
@@ -57,7 +57,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             stage,
             schedule,
             plans: Taker(plans),
-            gate,
+            permission,
             patience_us,
             age_us: 0,
             pulsing: false,
@@ -74,16 +74,16 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     /// Deadline: [`LEAST_PHASE_US`](crate::LEAST_PHASE_US).
     pub fn timer(&mut self) -> u32 {
         // The permission may have come at any time in the step that has just ended.
-        let before_us = if self.gate.take_renewed() { 0 } else { self.age_us };
+        let before_us = if self.permission.take_renewed() { 0 } else { self.age_us };
         self.age_us = before_us.saturating_add(self.lasted_us);
         self.lasted_us = self.next.duration_us;
         // A step that would outlast the permission does not begin.
         let ends_us = self.age_us.saturating_add(self.next.duration_us);
         let is_overdue = ends_us > self.patience_us && !self.schedule.is_idle();
         if is_overdue {
-            self.gate.set_late(true);
+            self.permission.set_late(true);
         }
-        if is_overdue || !self.gate.is_open() {
+        if is_overdue || !self.permission.is_open() {
             self.halt();
         }
         let step = self.next;
@@ -113,14 +113,14 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             }
         }
         if !self.schedule.is_intact() {
-            self.gate.set_plan_lost(true);
+            self.permission.set_plan_lost(true);
             self.halt();
         }
     }
 
     /// Urgent interrupt of the tick.
     pub fn attend(&mut self) {
-        if !self.gate.is_open() {
+        if !self.permission.is_open() {
             self.halt();
         }
     }
@@ -133,7 +133,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             self.discharge_us = Some(left_us);
         } else {
             self.discharge_us = None;
-            self.gate.set_output_failed(self.stage.neutral().is_err());
+            self.permission.set_output_failed(self.stage.neutral().is_err());
         }
     }
 
@@ -141,14 +141,14 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     /// Between pulses that is allowed.
     pub fn overran(&mut self) {
         if self.pulsing {
-            self.gate.set_late(true);
+            self.permission.set_late(true);
             self.halt();
         }
     }
 
     fn fail(&mut self) {
         self.halt();
-        self.gate.set_output_failed(true);
+        self.permission.set_output_failed(true);
     }
 
     /// No current, and no further pulse.
@@ -164,6 +164,6 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
             Some(_) => self.stage.discharge(),
             None => self.stage.neutral(),
         };
-        self.gate.set_output_failed(done.is_err());
+        self.permission.set_output_failed(done.is_err());
     }
 }

@@ -1,8 +1,9 @@
-//! Supervision: limits, plausibility of inputs, and latched faults. One pass per tick, in integers, without
-//! generics.
+//! Supervision: limits, plausibility of inputs, and latched faults. One pass per tick, in integers,
+//! without generics.
 //!
-//! Everything is off at boot. A fault latches until it is acknowledged by name ([`Supervisor::acknowledge`]) and the
-//! stimulator is armed ([`Supervisor::arm`]) within ten seconds, with the cause gone.
+//! Everything is off at boot. A fault latches until it is acknowledged by name
+//! ([`Supervisor::acknowledge`]) and the stimulator is armed ([`Supervisor::arm`]) within ten
+//! seconds, with the cause gone.
 
 pub use crate::fault::Fault;
 use crate::guarded::Guarded;
@@ -118,8 +119,8 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// Off and latched with [`Fault::Boot`], or [`Fault::Watchdog`] after a restart by the watchdog, for a tick time in
-    /// µs and a current source. For errors see [`Limits::validate`].
+    /// Off and latched with [`Fault::Boot`], or [`Fault::Watchdog`] after a restart by the
+    /// watchdog, for a tick time in µs and a current source. For errors see [`Limits::validate`].
     pub fn new(
         limits: Limits,
         tick_us: u32,
@@ -168,8 +169,8 @@ impl Supervisor {
         }
     }
 
-    /// Second step of arming: allowed if the last tick had no fault and the session is not over. Earlier output still
-    /// counts.
+    /// Second step of arming: allowed if the last tick had no fault and the session is not over.
+    /// Earlier output still counts.
     pub fn arm(&mut self) -> Result<(), NotArmed> {
         let State::Acknowledged { .. } = self.state else { return Err(NotArmed::NotAcknowledged) };
         if let Some(fault) = self.wrong {
@@ -204,7 +205,7 @@ impl Supervisor {
             }
             (State::Armed, Some(fault)) => self.state = State::Latched(fault),
             (State::Acknowledged { fault, .. }, Some(other))
-                if other != fault && other.is_of_a_moment() =>
+                if other != fault && other.is_transient() =>
             {
                 self.state = State::Latched(other);
             }
@@ -224,8 +225,8 @@ impl Supervisor {
         is_armed
     }
 
-    /// A session continues through pauses, stops and faults; only a rest ends it. A rest begins where the
-    /// next pulse would have come.
+    /// A session continues through pauses, stops and faults; only a rest ends it. A rest begins
+    /// where the next pulse would have come.
     fn count_session(&mut self, limits: Option<&Limits>, goes_on: bool, rests: bool) {
         if goes_on {
             self.session_us = self.session_us.saturating_add(self.tick_us.into());
@@ -374,8 +375,8 @@ fn charge_nc(stimulus: &Stimulus) -> u64 {
     (u64::from(stimulus.amplitude_ua) * u64::from(stimulus.width_us)).div_ceil(1000)
 }
 
-/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, with a recharge phase that is k times weaker and longer.
-/// Saturates; amplitudes count up to 1 A, above every limit.
+/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, with a recharge phase that is k times
+/// weaker and longer. Saturates; amplitudes count up to 1 A, above every limit.
 fn mean_square(stimulus: &Stimulus) -> u64 {
     let amplitude = u64::from(stimulus.amplitude_ua.min(1_000_000));
     let recovery = u64::from(stimulus.recovery.max(1));

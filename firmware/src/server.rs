@@ -1,13 +1,13 @@
 //! The device's end of the link, at the lowest priority.
 
 use crate::configuration::{MUSCLES, TYPES};
-use crate::gate::Gate;
 use crate::guarded::Guarded;
-use crate::lines::{Bank, LinkEnds, Order, Outcome, Row, Stimuli};
 use crate::link::{
     Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
     SessionNumber, Upload, encode,
 };
+use crate::link_queues::{Bank, LinkEnds, Order, Outcome, Row, Stimuli};
+use crate::permission::Permission;
 use crate::randomness::Randomness;
 use crate::safety::CHANNELS;
 use crate::stimulus::within;
@@ -64,7 +64,7 @@ pub struct Server<'q, F, R> {
     receiver: &'q mut Receiver,
     session: Session,
     ends: LinkEnds<'q>,
-    gate: &'q Gate,
+    permission: &'q Permission,
     uploads: Uploads<'q, F>,
     step: TimeStep,
     waiting: Waiting,
@@ -82,7 +82,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     pub fn new(
         room: &'q mut ServerRoom,
         ends: LinkEnds<'q>,
-        gate: &'q Gate,
+        permission: &'q Permission,
         memory: F,
         randomness: R,
         step: TimeStep,
@@ -92,7 +92,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
             receiver,
             session: Session::new(),
             ends,
-            gate,
+            permission,
             uploads: Uploads::restore(memory, stored, uploads, built, step),
             step,
             waiting: Waiting::Boot,
@@ -116,7 +116,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
 
     /// Whether current may flow.
     pub fn is_armed(&self) -> bool {
-        self.gate.is_open()
+        self.permission.is_open()
     }
 
     /// Whether it can take a byte: not before the last request is answered.
@@ -139,7 +139,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         match self.session.admit(received, begin) {
             Err(error) => self.refuse_frame(error),
             Ok(request) => {
-                self.gate.set_heard();
+                self.permission.set_heard();
                 if let Some(answer) = self.act(sequence, request).transpose() {
                     self.answer(sequence, &answer.unwrap_or_else(Answer::Refused));
                 }

@@ -1,9 +1,9 @@
 //! Uploaded muscles: validated, stored and built. Restored uploads are validated like new ones.
 
 use crate::configuration::MUSCLES;
-use crate::driven::Driven;
-use crate::lines::Bank;
 use crate::link::{Refusal, Upload};
+use crate::link_queues::Bank;
+use crate::placed_muscle::PlacedMuscle;
 use crate::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use vm_nostd::TimeStep;
@@ -42,20 +42,20 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
 
     /// Builds the stored upload of a place, if it is valid.
     fn build(&mut self, index: usize) {
-        let driven = self
+        let placed = self
             .uploads
             .get(index)
             .and_then(Option::as_ref)
             .map(|upload| self.checked(index, upload));
-        let driven = driven.and_then(Result::ok);
-        self.restored += u8::from(driven.is_some());
+        let placed = placed.and_then(Result::ok);
+        self.restored += u8::from(placed.is_some());
         if let (Some(upload), Some(built)) =
             (self.uploads.get_mut(index), self.built.get_mut(index))
         {
-            if driven.is_none() {
+            if placed.is_none() {
                 *upload = None;
             }
-            *built = driven;
+            *built = placed;
         }
     }
 
@@ -76,23 +76,23 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
 
     /// Validates, stores and builds an upload for a place.
     pub(crate) fn take(&mut self, index: usize, upload: Upload) -> Result<(), Refusal<'static>> {
-        let driven = self.checked(index, &upload)?;
+        let placed = self.checked(index, &upload)?;
         self.store(index, &Some(upload))?;
         if let (Some(slot), Some(built)) = (self.uploads.get_mut(index), self.built.get_mut(index))
         {
-            (*slot, *built) = (Some(upload), Some(driven));
+            (*slot, *built) = (Some(upload), Some(placed));
         }
         Ok(())
     }
 
     /// Builds the muscle of an upload for a place; an error if it is invalid or its channel is
     /// taken.
-    fn checked(&self, index: usize, upload: &Upload) -> Result<Driven, Refusal<'static>> {
-        let driven = Driven::build(upload, self.step)?;
-        if let Some(channel) = driven.channel() {
+    fn checked(&self, index: usize, upload: &Upload) -> Result<PlacedMuscle, Refusal<'static>> {
+        let placed = PlacedMuscle::build(upload, self.step)?;
+        if let Some(channel) = placed.channel() {
             self.only_free(channel, Some(index))?;
         }
-        Ok(driven)
+        Ok(placed)
     }
 
     /// Stores all uploads with a new one at a place.
@@ -113,8 +113,8 @@ impl<'q, F: MultiwriteNorFlash> Uploads<'q, F> {
         channel: u8,
         own: Option<usize>,
     ) -> Result<(), Refusal<'static>> {
-        let taken = self.built.iter().enumerate().find(|(place, driven)| {
-            let has = driven.as_ref().and_then(Driven::channel);
+        let taken = self.built.iter().enumerate().find(|(place, placed)| {
+            let has = placed.as_ref().and_then(PlacedMuscle::channel);
             Some(*place) != own && has == Some(channel)
         });
         match taken {

@@ -51,8 +51,8 @@ enum Command {
     Cycles(cycles::CyclesArgs),
     /// Compute the stimulator's deepest stack and free memory from its image.
     Stack(stack::StackArgs),
-    /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with the
-    /// host's.
+    /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with
+    /// the host's.
     Hil(hil::HilArgs),
     /// Simulate a planar two-joint arm with six muscles at constant activations.
     Arm(arm::ArmArgs),

@@ -256,7 +256,7 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
     fn row(&self) -> Row {
         let output = self.muscle.observe(&self.state);
         let output = match &self.tiring {
-            Some(tiring) => output.weakened(tiring.state.fitness()),
+            Some(tiring) => output.fatigued(tiring.state.fitness()),
             None => output,
         };
         row(output, self.f0)
@@ -266,7 +266,7 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
         let input = scaled(&input);
         let output = self.muscle.step(&mut self.state, input);
         let output = match &mut self.tiring {
-            Some(tiring) => output.weakened(tiring.advance(input)),
+            Some(tiring) => output.fatigued(tiring.advance(input)),
             None => output,
         };
         Ok(row(output, self.f0))

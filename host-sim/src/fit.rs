@@ -1,8 +1,9 @@
-//! A muscle of one's own: the numbers of a muscle file fitted to recordings, and what the recordings can and
-//! cannot tell of them.
+//! A muscle of one's own: the numbers of a muscle file fitted to recordings, and what the
+//! recordings can and cannot tell of them.
 //!
-//! Non-linear least squares by Levenberg and Marquardt's method (crate `levenberg-marquardt`, after MINPACK) from
-//! several starts. The shape of the file that lists recordings and free parameters is in `docs/trials.md`.
+//! Non-linear least squares by Levenberg and Marquardt's method (crate `levenberg-marquardt`, after
+//! MINPACK) from several starts. The shape of the file that lists recordings and free parameters is
+//! in `docs/trials.md`.
 
 mod curve;
 mod keys;

@@ -70,7 +70,8 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Target of symbolic links, existing or not; none if only the system can follow them, as to a pipe.
+/// Target of symbolic links, existing or not; none if only the system can follow them, as to a
+/// pipe.
 fn followed(path: &Path) -> Result<Option<PathBuf>> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {

@@ -1,5 +1,5 @@
-//! Many muscles and many inputs: every arithmetic against the reference, on all cores, into a table that can
-//! be gone on with after an interruption.
+//! Many muscles and many inputs: every arithmetic against the reference, on all cores, into a table
+//! that can be gone on with after an interruption.
 
 mod case;
 mod ledger;
@@ -40,8 +40,8 @@ pub struct Worst {
     pub status: String,
 }
 
-/// Which model made a table: its version, and a checksum of its golden bits, so that no table is gone on with by
-/// another one.
+/// Which model made a table: its version, and a checksum of its golden bits, so that no table is
+/// gone on with by another one.
 fn model() -> String {
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
     let bits = crc.checksum(golden::COMMITTED.as_bytes());
@@ -71,8 +71,8 @@ impl Sweep {
         row
     }
 
-    /// Computes what is not in the table yet. When all is, the table is put in order, so that it has the same
-    /// bytes however often it was interrupted.
+    /// Computes what is not in the table yet. When all is, the table is put in order, so that it
+    /// has the same bytes however often it was interrupted.
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |number| Self::begin(number, &self.space.case(number));
         let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
@@ -125,8 +125,8 @@ impl Sweep {
         row
     }
 
-    /// The worst cases of a table, worst first: `most` of every arithmetic, of those that had nothing to
-    /// flag, and as many of the others.
+    /// The worst cases of a table, worst first: `most` of every arithmetic, of those that had
+    /// nothing to flag, and as many of the others.
     pub fn worst(&self, ledger: &Ledger, most: usize) -> Vec<Worst> {
         let first = 2 + KEYS.len();
         let mut listed = Vec::new();

@@ -1,4 +1,5 @@
-//! `vm cycles --elf`: functions of one name are told apart, and a program that never ends is stopped.
+//! `vm cycles --elf`: functions of one name are told apart, and a program that never ends is
+//! stopped.
 //!
 //! The images are made here, of a few instructions. Where QEMU cannot be had, what needs it says
 //! SKIPPED.

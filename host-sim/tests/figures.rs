@@ -1,5 +1,5 @@
-//! `vm figures` leaves its files, its numbers are the authors' where they are known, and its claims say
-//! what is found.
+//! `vm figures` leaves its files, its numbers are the authors' where they are known, and its claims
+//! say what is found.
 
 use std::fs;
 use std::process::Command;

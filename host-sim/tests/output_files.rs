@@ -1,4 +1,5 @@
-//! What commands write: a file that is there keeps its permissions, links are followed, and nothing else is left.
+//! What commands write: a file that is there keeps its permissions, links are followed, and nothing
+//! else is left.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
@@ -137,7 +138,8 @@ fn a_pipe_and_a_device_are_written_to() {
     assert!(message.contains("/dev/full: "), "{message}");
 }
 
-/// The file beside its place is nobody's business: where it cannot be made, the one that was asked for is named.
+/// The file beside its place is nobody's business: where it cannot be made, the one that was asked
+/// for is named.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_error_names_the_file_that_was_asked_for_and_no_other() {
@@ -149,8 +151,9 @@ fn an_error_names_the_file_that_was_asked_for_and_no_other() {
     assert!(!message.contains(".tmp"), "{message}");
 }
 
-/// All output goes through one function: nothing else in this package writes a file but what is read again by a
-/// program that it starts (in folders that are removed), and the table of a sweep, row by row.
+/// All output goes through one function: nothing else in this package writes a file but what is
+/// read again by a program that it starts (in folders that are removed), and the table of a sweep,
+/// row by row.
 #[test]
 fn nothing_writes_files_but_one_function() {
     fn look(folder: &Path, found: &mut Vec<String>) {

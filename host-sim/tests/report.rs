@@ -61,7 +61,8 @@ fn the_page_has_everything_in_it() {
             page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
         assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
     }
-    // Every scenario at 1 ms has its plot, with axes, units and a legend; and there are six figures.
+    // Every scenario at 1 ms has its plot, with axes, units and a legend; and there are six
+    // figures.
     let scenarios = page.matches("error (% of F0)").count();
     assert!(scenarios >= 38, "{scenarios} plots");
     assert_eq!(page.matches("<svg ").count(), scenarios + 6);

@@ -1,5 +1,5 @@
-//! `vm sweep`: what is interrupted is gone on with, nothing lost and nothing doubled, and every case can be
-//! replayed.
+//! `vm sweep`: what is interrupted is gone on with, nothing lost and nothing doubled, and every
+//! case can be replayed.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! Six muscles and a skeleton, coupled at every tick: energy is conserved, every arithmetic moves the arm as
-//! the reference does, and effective length destabilises it as in the paper.
+//! Six muscles and a skeleton, coupled at every tick: energy is conserved, every arithmetic moves
+//! the arm as the reference does, and effective length destabilises it as in the paper.
 
 use host_sim::arm::{self, Activations, Arm, Drive, Moment, Outcome};
 use host_sim::engine::Arithmetic;
@@ -75,8 +75,8 @@ fn the_balance_is_of_second_order() {
 fn the_arm_moves_as_with_the_reference() {
     for mode in MODES {
         let (reference, _) = run(&drive(mode, Arithmetic::Reference));
-        // Degrees. FES starts at full force; with effective length the arm is unstable, and differences
-        // grow.
+        // Degrees. FES starts at full force; with effective length the arm is unstable, and
+        // differences grow.
         let [of_f32, of_fixed] = match mode {
             Mode::Continuous | Mode::Discrete => [6e-4, 3.8e-3],
             Mode::Fes => [0.017, 0.017],

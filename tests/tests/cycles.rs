@@ -8,8 +8,9 @@ use std::path::Path;
 use std::time::Duration;
 use system_tests::{build, skip};
 
-/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles. A direct call takes the
-/// upper part of RAM, where the stimulator has its statics: the image is another one.
+/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles.
+/// A direct call takes the upper part of RAM, where the stimulator has its statics: the image is
+/// another one.
 fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, ProfileError> {
     let (function, arguments) = ("libm::math::exp::exp", [Argument::Double(1.5)]);
     of_image(image, function, Some(&arguments), machine, tracer, Duration::from_secs(60))

@@ -9,8 +9,8 @@
 //! solve is quadratic, and its root right even where the path's speed jumps.
 //!
 //! - Ringing: the rule turns the phase of an oscillation by 2 atan(w h/2) instead of w h; with an
-//!   inertia that is less by as much as the tendon is taut, it turns it by w h on a taut tendon, and
-//!   neither loses nor gains energy.
+//!   inertia that is less by as much as the tendon is taut, it turns it by w h on a taut tendon,
+//!   and neither loses nor gains energy.
 //! - Damping: the midpoint rule would leave velocity that damping has long consumed, to alternate
 //!   for ever. How much of it is left is taken from the slope of FV; see [`decay`].
 

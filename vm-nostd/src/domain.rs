@@ -18,9 +18,10 @@ bitflags::bitflags! {
         const FREQUENCY_CLIPPED = 1 << 2;
         /// Stimulation frequency was not a number (taken as 0) or infinite (clipped).
         const FREQUENCY_NOT_FINITE = 1 << 3;
-        /// Path length was outside the muscle's range and was clipped: shorter than a slack tendon with the
-        /// fascicles at FV's pole, or longer than any activation could hold with n_f still defined, or beyond what
-        /// the arithmetic holds. [`MuscleParams::path_domain`](crate::MuscleParams::path_domain) has the rules.
+        /// Path length was outside the muscle's range and was clipped: shorter than a slack tendon
+        /// with the fascicles at FV's pole, or longer than any activation could hold with n_f still
+        /// defined, or beyond what the arithmetic holds.
+        /// [`MuscleParams::path_domain`](crate::MuscleParams::path_domain) has the rules.
         const PATH_LENGTH_CLIPPED = 1 << 4;
         /// Path length was not a number (the one before was kept) or infinite (clipped).
         const PATH_LENGTH_NOT_FINITE = 1 << 5;
@@ -38,7 +39,8 @@ bitflags::bitflags! {
         /// The tendon is extended by more than the arithmetic can tell: its force was taken at
         /// the most that it can. Only in fixed point, and at no less than ten times F0.
         const TENDON_FORCE_LIMITED = 1 << 10;
-        /// No activation holds the force that was asked for: the answer is the nearest. Never set by a tick.
+        /// No activation holds the force that was asked for: the answer is the nearest. Never set
+        /// by a tick.
         const FORCE_UNREACHABLE = 1 << 11;
     }
 }
@@ -92,10 +94,11 @@ pub(crate) struct Domain<S: Scalar> {
     pub(crate) path_length: Range<S::PathLength>,
     /// Where the equations of the filaments hold, L_ce0.
     pub(crate) filaments: Range<S>,
-    /// The slowest V_max of the types, or the greatest speed there is, L_ce0/s: FV of all types holds above.
+    /// The slowest V_max of the types, or the greatest speed there is, L_ce0/s: FV of all types
+    /// holds above.
     pub(crate) shortening_velocity: S,
-    /// What the state can hold, L_ce0: from the shortest at which the equations hold to what a muscle at
-    /// rest on the longest path is stretched to, and a little more.
+    /// What the state can hold, L_ce0: from the shortest at which the equations hold to what a
+    /// muscle at rest on the longest path is stretched to, and a little more.
     pub(crate) fascicle_length: Range<S>,
     /// L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
@@ -136,7 +139,8 @@ impl<S: Scalar> Domain<S> {
         }
     }
 
-    /// Where the fascicles are taken to be, of whose middle of a tick a length (L_ce0) was foreseen.
+    /// Where the fascicles are taken to be, of whose middle of a tick a length (L_ce0) was
+    /// foreseen.
     pub(crate) fn midway(&self, length: S) -> Midway<S> {
         if self.usual.contains(length) {
             return Midway { length, inside: length, usual: true };

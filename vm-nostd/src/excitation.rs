@@ -53,11 +53,11 @@ summed!([S: Scalar] Excitation<S> { tick, rise, rise_per_frequency, fall, fall_p
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Excited<S: Scalar> {
     /// f_int at the tick's end.
-    pub(crate) intermediate: S::Slow,
+    pub(crate) intermediate: S::LagState,
     /// f_eff at mid-tick.
     pub(crate) effective_at_middle: S,
     /// f_eff at the tick's end.
-    pub(crate) effective: S::Slow,
+    pub(crate) effective: S::LagState,
 }
 
 /// Range of fascicle length (L_ce0) and frequency (f0.5) for which the unit of time constants is
@@ -95,7 +95,7 @@ impl<S: Scalar> Excitation<S> {
     #[inline(always)]
     pub(crate) fn advance(
         &self,
-        (intermediate, effective): (S::Slow, S::Slow),
+        (intermediate, effective): (S::LagState, S::LagState),
         drive: S,
         frequency: S,
         slowing: S,
@@ -119,14 +119,14 @@ impl<S: Scalar> Excitation<S> {
         let [half, whole] = x.lags();
         let lag = S::of(effective) - drive;
         let effective_after = |lags: Lags<S::Share>| {
-            S::moved_by_two(effective, (excess, lags.delayed), (-lag, lags.done))
+            S::advanced_by_two(effective, (excess, lags.delayed), (-lag, lags.response))
         };
         // Rounding must not make the state negative.
         let end = effective_after(whole);
         Excited {
-            intermediate: S::moved(intermediate, -excess, whole.done),
+            intermediate: S::advanced(intermediate, -excess, whole.response),
             effective_at_middle: S::of(effective_after(half)),
-            effective: if S::of(end) < S::ZERO { S::ZERO.slow() } else { end },
+            effective: if S::of(end) < S::ZERO { S::ZERO.lag_state() } else { end },
         }
     }
 }

@@ -63,7 +63,7 @@ pub struct FatigueState<S: Scalar> {
     /// Fitness in whole steps.
     steps: S,
     /// The remainder: near 1, the ULP of `f32` exceeds the change of a tick.
-    rest: S::Slow,
+    rest: S::LagState,
 }
 
 impl<S: Scalar> FatigueState<S> {
@@ -74,7 +74,7 @@ impl<S: Scalar> FatigueState<S> {
 
     /// The bits, for comparison. [`Fatigue::save`] adds the fingerprint for storage.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        core::iter::once(self.steps.to_bits()).chain(S::slow_words(self.rest))
+        core::iter::once(self.steps.to_bits()).chain(S::lag_state_words(self.rest))
     }
 
     /// Fitness fit, 0..1.
@@ -144,7 +144,7 @@ impl<S: Scalar> Fatigue<S> {
 
     /// State of a rested muscle.
     pub fn rested(&self) -> FatigueState<S> {
-        FatigueState { steps: S::ONE, rest: S::ZERO.slow() }
+        FatigueState { steps: S::ONE, rest: S::ZERO.lag_state() }
     }
 
     /// Fingerprint of coefficients, time step and arithmetic.
@@ -172,7 +172,7 @@ impl<S: Scalar> Fatigue<S> {
         let share = |value| self.activation.contains(value);
         let steps = saved.number(share)?;
         // A tick may change fitness by more than a step.
-        let rest = saved.slow(&Range { least: -S::ONE, most: S::ONE })?;
+        let rest = saved.lag_state(&Range { least: -S::ONE, most: S::ONE })?;
         saved.finished()?;
         Ok(FatigueState { steps, rest })
     }
@@ -196,7 +196,7 @@ impl<S: Scalar> Fatigue<S> {
         let load = activation * strain;
 
         let fitness = state.fitness();
-        let moved = S::moved_by_two(
+        let moved = S::advanced_by_two(
             state.rest,
             ((self.least_fitness - fitness) * load, self.tire),
             ((S::ONE - fitness) * (S::ONE - load), self.recover),
@@ -211,7 +211,7 @@ impl<S: Scalar> Fatigue<S> {
             S::ZERO
         };
         state.steps = state.steps + whole;
-        state.rest = S::moved(moved, -whole, self.all);
+        state.rest = S::advanced(moved, -whole, self.all);
         state.fitness()
     }
 }
@@ -219,7 +219,7 @@ impl<S: Scalar> Fatigue<S> {
 impl<S: Scalar> Output<S> {
     /// The output with the force that a fitness (0..1) leaves of it.
     #[must_use]
-    pub fn weakened(self, fitness: S) -> Self {
+    pub fn fatigued(self, fitness: S) -> Self {
         let relative_force = fitness * self.relative_force;
         Self { force: fitness.of_share(self.force), relative_force, ..self }
     }

@@ -176,7 +176,7 @@ impl<S: Scalar> ForceVelocity<S> {
         if velocity <= self.maximum_velocity {
             return (S::ZERO, S::ZERO, S::ZERO);
         }
-        let reciprocal = velocity.of_one_and(denominator);
+        let reciprocal = velocity.reciprocal_of_one_plus(denominator);
         let rise = (numerator - denominator) * reciprocal;
         let slope = rise * reciprocal;
         (S::ONE + rise * velocity, slope, -(denominator * reciprocal * slope))

@@ -22,12 +22,12 @@ impl<S: Scalar> Lag<S> {
     }
 
     /// Value at mid-tick.
-    pub(crate) fn at_middle(&self, start: S::Slow, target: S) -> S {
-        S::of(S::moved(start, target - S::of(start), self.half))
+    pub(crate) fn at_middle(&self, start: S::LagState, target: S) -> S {
+        S::of(S::advanced(start, target - S::of(start), self.half))
     }
 
     /// Value at the end of the tick.
-    pub(crate) fn at_end(&self, start: S::Slow, target: S) -> S::Slow {
-        S::moved(start, target - S::of(start), self.whole)
+    pub(crate) fn at_end(&self, start: S::LagState, target: S) -> S::LagState {
+        S::advanced(start, target - S::of(start), self.whole)
     }
 }

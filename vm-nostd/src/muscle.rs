@@ -37,8 +37,9 @@ pub struct Input<S: Scalar> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Output<S: Scalar> {
-    /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. It has no upper bound but the tendon's stiffness: a
-    /// path that jumps, as a faulty sensor may, stretches the tendon by all of it.
+    /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. It has no upper bound but
+    /// the tendon's stiffness: a path that jumps, as a faulty sensor may, stretches the tendon by
+    /// all of it.
     pub force: S::Force,
     /// The same relative to F0, F_se: in fixed point to 6e-8 F0, where `force` is told to 1 mN.
     pub relative_force: S,
@@ -182,7 +183,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             gains: [S::ZERO; N],
             compressed: S::ZERO,
             speed: Speed::NONE,
-            yieldings: [S::ONE.slow(); N],
+            yieldings: [S::ONE.lag_state(); N],
             recruitment: self.recruitment.at_rest(&self.fibers),
         })
     }
@@ -192,8 +193,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         self.max_isometric_force
     }
 
-    /// Checksum of all coefficients: it stays what it is as long as memory does. Firmware that compares it every
-    /// tick sees a flipped bit before it makes a force.
+    /// Checksum of all coefficients: it stays what it is as long as memory does. Firmware that
+    /// compares it every tick sees a flipped bit before it makes a force.
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
         self.sum(&mut checksum);
@@ -205,24 +206,26 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         (self.domain.path_length.least, self.domain.path_length.most)
     }
 
-    /// What saved states begin with: it tells muscles apart, their modes, time steps and arithmetics.
+    /// What saved states begin with: it tells muscles apart, their modes, time steps and
+    /// arithmetics.
     fn fingerprint(&self) -> u32 {
-        // The time step is in the coefficients; where no bit of them differs, the muscles are the same.
+        // The time step is in the coefficients; where no bit of them differs, the muscles are the
+        // same.
         let mut fingerprint = Checksum::EMPTY;
         let words = [S::ARITHMETIC, R::MODE, N as u32, self.checksum()];
         words.into_iter().for_each(|word| fingerprint.add(word));
         fingerprint.value()
     }
 
-    /// The words to save a state of this muscle in, [`State::SAVED_WORDS`] of them: a fingerprint of the muscle,
-    /// its mode, time step and arithmetic, and [`State::words`]. A muscle of other fields or whose memory has lost a
-    /// bit has another fingerprint, but for a chance of 2^-32.
+    /// The words to save a state of this muscle in, [`State::SAVED_WORDS`] of them: a fingerprint
+    /// of the muscle, its mode, time step and arithmetic, and [`State::words`]. A muscle of other
+    /// fields or whose memory has lost a bit has another fingerprint, but for a chance of 2^-32.
     pub fn save(&self, state: &State<S, R, N>) -> impl Iterator<Item = S::Bits> {
         core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
     }
 
-    /// A state saved by [`Muscle::save`], refused unless it is this muscle's, for this time step, and one it can
-    /// be in.
+    /// A state saved by [`Muscle::save`], refused unless it is this muscle's, for this time step,
+    /// and one it can be in.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
@@ -247,9 +250,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         for gain in &mut gains {
             *gain = saved.number(about_a_share)?;
         }
-        let mut yieldings = [S::ONE.slow(); N];
+        let mut yieldings = [S::ONE.lag_state(); N];
         for (kept, fiber) in yieldings.iter_mut().zip(&self.fibers) {
-            *kept = saved.slow(&fiber.yielding.range())?;
+            *kept = saved.lag_state(&fiber.yielding.range())?;
         }
         let recruitment = self.recruitment.restored(&self.fibers, &mut saved)?;
         saved.finished()?;
@@ -328,8 +331,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
     }
 
-    /// Keeps `length` and velocity inside what the state can hold, and says what it had to keep, and
-    /// whether the filaments' equations held at the tick's `middle` and at its end.
+    /// Keeps `length` and velocity inside what the state can hold, and says what it had to keep,
+    /// and whether the filaments' equations held at the tick's `middle` and at its end.
     fn confine(&self, state: &mut State<S, R, N>, length: S, middle: S) -> Status {
         let tendon = &self.contraction.tendon;
         let (length, stopped) = self.domain.fascicle_length.clip(length);

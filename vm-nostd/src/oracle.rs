@@ -291,7 +291,7 @@ fn excitation_is_exact_also_where_its_two_lags_cross_within_a_tick() {
 }
 
 #[test]
-fn a_lag_reaches_its_target_and_its_middle_lies_on_the_way() {
+fn a_lag_is_exact_at_mid_tick_and_at_the_end() {
     let lag = Lag::<f64>::new(0.03, TimeStep::MILLISECOND);
     let exact = |ticks: f64| 1.0 - (-ticks * 1e-3 / 0.03_f64).exp();
     assert!((lag.at_end(0.0, 1.0) - exact(1.0)).abs() < 1e-15);
@@ -324,7 +324,7 @@ fn the_readme_has_the_bounds_of_the_relations_and_their_sum() {
 }
 
 #[test]
-fn held_forces_are_off_by_no_more_than_the_sum_of_the_relations_bounds() {
+fn errors_of_held_forces_are_below_the_sum_of_the_bounds() {
     fn held<S: Scalar>(activation: f64, path: f64) -> f64 {
         let muscle = ContinuousMuscle::<S, 2>::build(&PAPER_MUSCLE, TimeStep::MILLISECOND).unwrap();
         let path = S::path_length(path);

@@ -107,7 +107,7 @@ pub struct Moment<S: Scalar, const N: usize> {
 pub(crate) fn activated<S: Scalar>(
     fiber: &Fiber<S>,
     curve: &ActivationCurve<S>,
-    sag: &mut S::Slow,
+    sag: &mut S::LagState,
     yielding: S,
     frequency: S,
     firing: S,

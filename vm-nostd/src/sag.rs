@@ -62,7 +62,7 @@ impl<S: Scalar> Sag<S> {
     }
 
     /// S at the tick's end if the type fired for a `share` (0..1) of the tick.
-    pub(crate) fn advance(&self, sag: S::Slow, share: S) -> S::Slow {
+    pub(crate) fn advance(&self, sag: S::LagState, share: S) -> S::LagState {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;
         self.lag.at_end(sag, target)
     }

@@ -21,7 +21,7 @@ pub(crate) mod sealed {
 ///
 /// The equations are written once, over this trait. Sums and products saturate in fixed point;
 /// operations that need more resolution are explicit: [`scaled`](Scalar::scaled) by a constant of
-/// any magnitude, [`Slow`](Scalar::Slow) for the state of a lag, [`ratio`](Scalar::ratio).
+/// any magnitude, [`LagState`](Scalar::LagState) for the state of a lag, [`ratio`](Scalar::ratio).
 ///
 /// Kernels and all that is called once a tick are inlined: a call costs a frame and spills
 /// registers.
@@ -43,7 +43,7 @@ pub trait Scalar:
     /// A constant to multiply with, of any magnitude.
     type Factor: Copy + Debug + Summed;
     /// State of a lag, with more resolution than the number itself.
-    type Slow: Copy + Debug + PartialEq;
+    type LagState: Copy + Debug + PartialEq;
     /// Share, 0..1, of the distance of a lag to its target.
     type Share: Copy + Debug + Summed;
     /// A musculotendon path length: m in floating point, µm in fixed point.
@@ -73,7 +73,7 @@ pub trait Scalar:
     const FORCE_STEP: f64;
     /// Longest representable path, m.
     const LONGEST_PATH: f64;
-    /// Words of a [`Slow`](Scalar::Slow) in a saved state.
+    /// Words of a [`LagState`](Scalar::LagState) in a saved state.
     const SLOW_WORDS: usize;
 
     /// Nearest value. Used when a muscle is built, never in a tick.
@@ -122,7 +122,7 @@ pub trait Scalar:
     fn weibull(self) -> (Self, Self);
     /// `1/(1 + factor self)`, whose denominator is positive.
     #[must_use]
-    fn of_one_and(self, factor: Self) -> Self;
+    fn reciprocal_of_one_plus(self, factor: Self) -> Self;
     /// Solves a force balance with a residual `self`, a line and a hyperbola: the root u of
     /// `self` + `line` u + h(u) = 0, and h(u)/(`steepness` u), the secant over the tangent at 0.
     ///
@@ -130,29 +130,30 @@ pub trait Scalar:
     /// on its branch through 0. `line` and `steepness` are positive.
     fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self);
 
-    /// A slow value equal to `self`.
-    fn slow(self) -> Self::Slow;
-    /// Value of a slow value.
-    fn of(slow: Self::Slow) -> Self;
-    /// A slow value moved by `difference` times `share`.
-    fn moved(slow: Self::Slow, difference: Self, share: Self::Share) -> Self::Slow;
-    /// A slow value moved by the sum of two differences times their shares.
-    fn moved_by_two(
-        slow: Self::Slow,
+    /// State of a lag with the value `self`.
+    fn lag_state(self) -> Self::LagState;
+    /// Value of the state of a lag.
+    fn of(slow: Self::LagState) -> Self;
+    /// State of a lag advanced by `difference` times `share`.
+    fn advanced(slow: Self::LagState, difference: Self, share: Self::Share) -> Self::LagState;
+    /// State of a lag advanced by the sum of two differences times their shares.
+    fn advanced_by_two(
+        slow: Self::LagState,
         first: (Self, Self::Share),
         second: (Self, Self::Share),
-    ) -> Self::Slow;
+    ) -> Self::LagState;
     /// The share nearest to a constant, 0..1. Used when a muscle is built.
     fn share(value: f64) -> Self::Share;
     /// Step response of a lag after `self` time constants: 1 - exp(-`self`).
-    fn done(self) -> Self::Share;
+    fn lag_response(self) -> Self::Share;
     /// Step response of two lags in series after half of x and after x = `self` time constants, at
     /// most 2.5.
     fn lags(self) -> [Lags<Self::Share>; 2];
-    /// The words of a slow value.
-    fn slow_words(slow: Self::Slow) -> impl Iterator<Item = Self::Bits>;
-    /// The slow value of the next words; none if there are too few.
-    fn slow_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self::Slow>;
+    /// Words of the state of a lag.
+    fn lag_state_words(slow: Self::LagState) -> impl Iterator<Item = Self::Bits>;
+    /// State of a lag from the next words; none if there are too few.
+    fn lag_state_from_words(words: &mut impl Iterator<Item = Self::Bits>)
+    -> Option<Self::LagState>;
 
     /// Nearest path length to one in m. Not used in a tick.
     fn path_length(metres: f64) -> Self::PathLength;
@@ -228,7 +229,7 @@ pub trait Scalar:
 #[derive(Clone, Copy, Debug)]
 pub struct Lags<T> {
     /// 1 - exp(-x), of either lag.
-    pub done: T,
+    pub response: T,
     /// x exp(-x), by which the second is behind the first.
     pub delayed: T,
 }

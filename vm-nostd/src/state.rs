@@ -27,7 +27,7 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     /// Speed during the last tick: what Y has still to be advanced by.
     pub(crate) speed: Speed<S>,
     /// Y of each type at the start of the last tick, 0..1.
-    pub(crate) yieldings: [S::Slow; N],
+    pub(crate) yieldings: [S::LagState; N],
     pub(crate) recruitment: R::State,
 }
 
@@ -40,8 +40,8 @@ pub enum RestoreError {
         /// How many it has.
         expected: usize,
     },
-    /// They were saved by another muscle, or for another mode, time step or arithmetic; or one whose
-    /// coefficients have lost a bit since.
+    /// They were saved by another muscle, or for another mode, time step or arithmetic; or one
+    /// whose coefficients have lost a bit since.
     OtherMuscle {
         /// The fingerprint they begin with.
         saved: u64,
@@ -108,7 +108,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
         of_muscle
             .into_iter()
             .chain(self.gains.into_iter().map(S::to_bits))
-            .chain(self.yieldings.into_iter().flat_map(S::slow_words))
+            .chain(self.yieldings.into_iter().flat_map(S::lag_state_words))
             .chain(self.recruitment.words())
     }
 }
@@ -191,11 +191,14 @@ impl<I: Iterator> Saved<I> {
         self.checked(value, 1, |value| range.contains(*value))
     }
 
-    pub(crate) fn slow<S: Scalar>(&mut self, range: &Range<S>) -> Result<S::Slow, RestoreError>
+    pub(crate) fn lag_state<S: Scalar>(
+        &mut self,
+        range: &Range<S>,
+    ) -> Result<S::LagState, RestoreError>
     where
         I: Iterator<Item = S::Bits>,
     {
-        let value = S::slow_from_words(&mut self.words);
+        let value = S::lag_state_from_words(&mut self.words);
         self.checked(value, S::SLOW_WORDS, |value| {
             range.about_contains(S::of(*value), S::from_f64(ROUNDING))
         })

@@ -95,7 +95,7 @@ impl<S: Scalar> Yielding<S> {
     /// velocity taken at the tick's boundary would be biased: inputs that step every tick make it ripple
     /// in step with them.
     #[inline(always)]
-    pub(crate) fn advance(&self, yielding: S::Slow, speed: &Speed<S>) -> S::Slow {
+    pub(crate) fn advance(&self, yielding: S::LagState, speed: &Speed<S>) -> S::LagState {
         if self.depth == S::ZERO {
             return yielding;
         }

@@ -4,12 +4,12 @@ use super::{Aged, Device};
 use crate::configuration::{MUSCLES, TICK_US};
 use crate::controller::Controller;
 use crate::deadline::Deadline;
-use crate::driven::{Demand, Driven};
-use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::limits::Limits;
-use crate::lines::{Lines, LinkEnds, Order, Outcome};
 use crate::link::{Electrode, Mode, Readings, RowInputs, Upload};
+use crate::link_queues::{LinkEnds, LinkQueues, Order, Outcome};
+use crate::permission::Permission;
+use crate::placed_muscle::{Demand, PlacedMuscle};
 use crate::plan::{Plan, PlanQueue};
 use crate::rig::MUSCLE;
 use crate::safety::{CHANNELS, Fault, State};
@@ -52,22 +52,22 @@ const ROW: RowInputs =
 struct Bench {
     device: Device<'static>,
     ends: LinkEnds<'static>,
-    gate: &'static Gate,
+    permission: &'static Permission,
     plans: Consumer<'static, Guarded<Plan<CHANNELS>>>,
 }
 
 impl Bench {
     fn armed(limits: Limits) -> Self {
         let queue: &'static mut PlanQueue = Box::leak(Box::default());
-        let gate: &'static Gate = Box::leak(Box::default());
-        let lines: &'static mut Lines = Box::leak(Box::default());
+        let permission: &'static Permission = Box::leak(Box::default());
+        let link_queues: &'static mut LinkQueues = Box::leak(Box::default());
         let (give, plans) = queue.split();
-        let (tick, ends) = lines.split(Box::leak(Box::default()));
-        let controller = Controller::new(limits, TICK_US, Fault::Boot, SCALE, give, gate);
+        let (tick, ends) = link_queues.split(Box::leak(Box::default()));
+        let controller = Controller::new(limits, TICK_US, Fault::Boot, SCALE, give, permission);
         let controller = controller.expect("valid limits");
         let device = Device::new(controller, tick, Deadline::new(TICK_US, 1));
-        let mut bench = Self { device, ends, gate, plans };
-        let muscle = Driven::build(&UPLOAD, TimeStep::MILLISECOND).expect("a muscle");
+        let mut bench = Self { device, ends, permission, plans };
+        let muscle = PlacedMuscle::build(&UPLOAD, TimeStep::MILLISECOND).expect("a muscle");
         let bank = bench.ends.spare.take().expect("a bank");
         bank[0] = Some(muscle);
         bench.order(Order::Load(0, bank));
@@ -96,7 +96,7 @@ impl Bench {
 
     /// Of a host that is heard, and takes its traces.
     fn tick(&mut self) -> bool {
-        self.gate.set_heard();
+        self.permission.set_heard();
         let armed = self.device.tick(0);
         while self.ends.traces.dequeue().is_some() {}
         while self.plans.dequeue().is_some() {}
@@ -217,7 +217,7 @@ fn traces_that_are_not_taken_end_in_neutral() {
     let mut armed = 0;
     for _ in 0..200 {
         let _maybe_full = bench.ends.rows.enqueue(row());
-        bench.gate.set_heard();
+        bench.permission.set_heard();
         armed += u32::from(bench.device.tick(0));
         while bench.plans.dequeue().is_some() {}
     }

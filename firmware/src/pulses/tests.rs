@@ -1,10 +1,10 @@
 //! What a halt leaves: nothing, also of what waits.
 
 use super::Pulses;
-use crate::gate::Gate;
 use crate::guarded::Guarded;
 use crate::limits::Limits;
 use crate::output::{Bridge, OutputStage};
+use crate::permission::Permission;
 use crate::plan::{Plan, PlanQueue};
 use crate::stimulus::{Scale, Stimulus};
 use core::convert::Infallible;
@@ -52,17 +52,17 @@ fn a_halt_throws_away_the_plans_that_wait() {
     let plan =
         Plan::new(&[Some(stimulus), None, None, None], &scale, &Limits::SURFACE).expect("a plan");
     let mut queue = PlanQueue::new();
-    let gate = Gate::new();
+    let permission = Permission::new();
     let (mut give, take) = queue.split();
-    let mut pulses = Pulses::new(stage.expect("a stage"), take, &gate, 1000);
-    // A gate that is open leaves them for the next step; one that is shut does not.
-    gate.set_open(true);
+    let mut pulses = Pulses::new(stage.expect("a stage"), take, &permission, 1000);
+    // A permission that is open leaves them for the next step; one that is shut does not.
+    permission.set_open(true);
     for _ in 0..3 {
         assert!(give.enqueue(Guarded::new(plan)).is_ok());
     }
     pulses.attend();
     assert_eq!(give.len(), 3);
-    gate.set_open(false);
+    permission.set_open(false);
     pulses.attend();
     assert_eq!(give.len(), 0);
 }

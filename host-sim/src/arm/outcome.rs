@@ -27,8 +27,8 @@ pub struct Outcome {
     pub period: Option<f64>,
     /// An angle left the range of its joint, where paths may be clipped.
     pub out_of_range: bool,
-    /// Largest energy error over the run: kinetic energy minus work of the muscles, as a share of all work
-    /// done and absorbed.
+    /// Largest energy error over the run: kinetic energy minus work of the muscles, as a share of
+    /// all work done and absorbed.
     pub energy_error: f64,
     /// All flags of all muscles.
     pub status: Status,
@@ -46,8 +46,8 @@ pub struct Swings {
 }
 
 impl Swings {
-    /// Growth rate of the amplitude from the early to the late half, 1/s; negative if it decays. A joint at
-    /// rest counts as 0.01 degrees.
+    /// Growth rate of the amplitude from the early to the late half, 1/s; negative if it decays. A
+    /// joint at rest counts as 0.01 degrees.
     pub fn growth(&self) -> Joints {
         [0, 1].map(|joint| {
             let [early, late] =

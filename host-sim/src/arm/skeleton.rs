@@ -3,7 +3,8 @@
 //! `M(q) q'' + C(q, q') = torque`, with the inertia of each segment about the joint above it:
 //!
 //! ```text
-//! M = | J1 + J2 + m2 l1² + 2 k cos q2    J2 + k cos q2 |      k = m2 l1 c2, l1 the upper arm's length
+//! k = m2 l1 c2, with the upper arm's length l1
+//! M = | J1 + J2 + m2 l1² + 2 k cos q2    J2 + k cos q2 |
 //!     | J2 + k cos q2                    J2            |
 //! C = k sin q2 | -(2 q1' + q2') q2' |
 //!              |  q1'²              |

@@ -18,8 +18,8 @@ pub struct CyclesArgs {
     /// Print the rows as a JSON array instead of a table.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     json: bool,
-    /// Fail where a budget of data/budgets.toml is exceeded or stale, or the README's tables are not
-    /// what is measured.
+    /// Fail where a budget of data/budgets.toml is exceeded or stale, or the README's tables are
+    /// not what is measured.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     check: bool,
     /// Write the README's tables, and figure 7's data/computation.csv.

@@ -122,8 +122,8 @@ impl Follower<'_> {
     }
 }
 
-/// Runs a program, of which `image` is the code, and times every call of the functions. A call inside of another one's is part of
-/// that.
+/// Runs a program, of which `image` is the code, and times every call of the functions. A call
+/// inside of another one's is part of that.
 pub fn follow(
     image: &Image,
     program: &Program<'_>,

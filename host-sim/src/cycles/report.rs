@@ -123,7 +123,8 @@ pub struct Row {
     pub budget: Option<u64>,
     /// Whether all budgets hold and none is stale.
     pub pass: bool,
-    /// What a tick takes, by the model's file that it is part of, most first; none for what is not the model.
+    /// What a tick takes, by the model's file that it is part of, most first; none for what is not
+    /// the model.
     #[serde(default)]
     pub files: Vec<Share>,
     /// The same by class of instruction.

@@ -1,4 +1,5 @@
-//! Spreads of parameters among people, as published: `data/priors.csv`, which says where each is from.
+//! Spreads of parameters among people, as published: `data/priors.csv`, which says where each is
+//! from.
 
 use serde::Deserialize;
 

@@ -153,8 +153,8 @@ impl Problem {
         self.parameters().iter().zip(values).filter_map(of).collect()
     }
 
-    /// Derivatives of the residuals by each parameter in units of its range, by central differences, one-sided
-    /// where the muscle beyond cannot be.
+    /// Derivatives of the residuals by each parameter in units of its range, by central
+    /// differences, one-sided where the muscle beyond cannot be.
     pub fn jacobian(&self, values: &[f64]) -> Option<DMatrix<f64>> {
         const STEP: f64 = 1e-4;
         let middle = self.residuals(values)?;

@@ -1,4 +1,5 @@
-//! The fitted muscle as a file that every command takes: the start's, with the fitted numbers in their places.
+//! The fitted muscle as a file that every command takes: the start's, with the fitted numbers in
+//! their places.
 
 use super::curve;
 use super::keys::{EXCITATION_TIMES, FORCE, Key};
@@ -8,8 +9,8 @@ use crate::reference::Muscle;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// The text of the fitted muscle's file: what was fitted, from what (`origin`) and how well, in comments above the
-/// muscle.
+/// The text of the fitted muscle's file: what was fitted, from what (`origin`) and how well, in
+/// comments above the muscle.
 pub fn fitted_file(start: &Table, fit: &Fit, origin: &str) -> String {
     let mut table = start.clone();
     for estimate in &fit.estimates {

@@ -68,7 +68,8 @@ pub fn error_budget(report: &Report) -> String {
     text
 }
 
-/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what instructions.
+/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what
+/// instructions.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
         "| case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
@@ -105,7 +106,8 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
     text
 }
 
-/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its memory.
+/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its
+/// memory.
 pub fn stack(report: &stack::Report) -> String {
     let mut text =
         String::from("| task | priority | stack, B | largest frame |\n|---|---:|---:|---|\n");
@@ -138,7 +140,8 @@ pub fn memory(report: &stack::Report) -> String {
 /// A case and the shares of its ticks.
 type Column<'a> = (&'a str, &'a [Share]);
 
-/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all of them.
+/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all
+/// of them.
 fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> String) -> String {
     let mut total: BTreeMap<&str, f64> = BTreeMap::new();
     for share in columns.iter().flat_map(|(_, shares)| *shares) {

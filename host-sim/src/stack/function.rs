@@ -193,8 +193,8 @@ impl<'a> Functions<'a> {
         walked
     }
 
-    /// Targets of the table of a TBB or TBH, with entries of 1 or 2 bytes. The table ends where code begins, as
-    /// marked in the image or at its first target.
+    /// Targets of the table of a TBB or TBH, with entries of 1 or 2 bytes. The table ends where
+    /// code begins, as marked in the image or at its first target.
     fn table(&self, start: u32, bytes: u32) -> Option<BTreeSet<u32>> {
         let mut targets: BTreeSet<u32> = BTreeSet::new();
         let mut at = start;
@@ -268,7 +268,8 @@ mod tests {
         assert_eq!(own(&[0xB510, 0x2800, 0xBF08, 0xBD10, 0xB082, 0xB002, 0xBD10]), 16);
         // push {r4, lr}; sub sp, #8; itt ne; addne sp, #8; popne {r4, pc}; add sp, #8; pop {r4, pc}
         assert_eq!(own(&[0xB510, 0xB082, 0xBF1C, 0xB002, 0xBD10, 0xB002, 0xBD10]), 16);
-        // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; and what is below depends: add sp, #8; pop {r4, pc}
+        // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; and what is below depends: add sp,
+        // #8; pop {r4, pc}
         let depends = &[0xB510, 0xBF0C, 0xB082, 0xB084, 0xB002, 0xBD10];
         assert!(only_unknown(depends).contains("returns without restoring"));
     }
@@ -304,7 +305,8 @@ mod tests {
 
     #[test]
     fn all_that_a_table_leads_to_is_walked() {
-        // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7, lr}; pop {r4-r7, pc}
+        // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7,
+        // lr}; pop {r4-r7, pc}
         let code = [0xE8DF, 0xF000, 0x0302, 0x0005, 0x4770, 0xB510, 0xBD10, 0xB5F0, 0xBDF0];
         assert_eq!(own(&code), 20);
         // The same with a NOP before A.

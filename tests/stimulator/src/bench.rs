@@ -3,7 +3,7 @@
 use crate::device::LIMITS as BOARD;
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use firmware::safety::{Fault, Observed, Requested};
-use firmware::{Controller, Gate, Limits, PlanQueue, Pulses, Stimulus};
+use firmware::{Controller, Limits, Permission, PlanQueue, Pulses, Stimulus};
 
 /// What a test does to observation and request of a tick, counted from when it was injected.
 pub type Inject = Box<dyn FnMut(&mut Observed, &mut Requested, u32)>;
@@ -64,12 +64,12 @@ impl Bench {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
         let queue: &'static mut PlanQueue = Box::leak(Box::default());
-        let gate: &'static Gate = Box::leak(Box::default());
+        let permission: &'static Permission = Box::leak(Box::default());
         let (give, take) = queue.split();
-        let controller = Controller::new(limits, tick_us, boot, SCALE, give, gate);
+        let controller = Controller::new(limits, tick_us, boot, SCALE, give, permission);
         Self {
             controller: controller.expect("valid limits"),
-            pulses: Pulses::new(stage, take, gate, tick_us),
+            pulses: Pulses::new(stage, take, permission, tick_us),
             electrodes,
             tick: 0,
             tick_us,

@@ -4,8 +4,8 @@ use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use firmware::safety::Fault;
 use firmware::{
-    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, RamFlash, Randomness,
-    Server,
+    Controller, Deadline, Device, Limits, LinkQueues, Permission, PlanQueue, Pulses, RamFlash,
+    Randomness, Server,
 };
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Read, Result, Write};
@@ -63,24 +63,24 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
         let (stage, electrodes) = stage();
         // As statics of a firmware are.
         let plans: &'static mut PlanQueue = Box::leak(Box::default());
-        let gate: &'static Gate = Box::leak(Box::default());
-        let lines: &'static mut Lines = Box::leak(Box::default());
+        let permission: &'static Permission = Box::leak(Box::default());
+        let link_queues: &'static mut LinkQueues = Box::leak(Box::default());
         let randomness: &'static mut dyn Randomness = Box::leak(randomness);
         let (give, take) = plans.split();
-        let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
-        let controller =
-            Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate).expect("valid limits");
+        let (tick_ends, link_ends) = link_queues.split(Box::leak(Box::default()));
+        let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, permission)
+            .expect("valid limits");
         Self {
             server: Server::new(
                 Box::leak(Box::default()),
                 link_ends,
-                gate,
+                permission,
                 memory,
                 randomness,
                 TimeStep::MILLISECOND,
             ),
             device: Device::new(controller, tick_ends, Deadline::new(TICK, 1)),
-            pulses: Pulses::new(stage, take, gate, TICK),
+            pulses: Pulses::new(stage, take, permission, TICK),
             electrodes,
             arriving: VecDeque::new(),
             ticks: 0,

@@ -9,8 +9,8 @@ use firmware::link::{
 };
 use firmware::safety::Fault;
 use firmware::{
-    Controller, Deadline, Device, Gate, Limits, Lines, PlanQueue, Pulses, Server, ServerRoom,
-    explore,
+    Controller, Deadline, Device, Limits, LinkQueues, Permission, PlanQueue, Pulses, Server,
+    ServerRoom, explore,
 };
 use self_cell::{MutBorrow, self_cell};
 use std::cell::{Cell, RefCell};
@@ -34,8 +34,8 @@ enum Level {
 #[derive(Default)]
 struct Statics {
     plans: PlanQueue,
-    gate: Gate,
-    lines: Lines,
+    permission: Permission,
+    link_queues: LinkQueues,
     room: ServerRoom,
 }
 
@@ -98,22 +98,22 @@ impl Levels {
         explore::before_each_access(None);
         let (stage, electrodes) = stage();
         let firmware = Firmware::new(MutBorrow::new(Statics::default()), |statics| {
-            let Statics { plans, gate, lines, room } = statics.borrow_mut();
-            let gate = &*gate;
+            let Statics { plans, permission, link_queues, room } = statics.borrow_mut();
+            let permission = &*permission;
             let (give, take) = plans.split();
-            let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
-            let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, gate)
+            let (tick_ends, link_ends) = link_queues.split(Box::leak(Box::default()));
+            let controller = Controller::new(limits, TICK, Fault::Boot, SCALE, give, permission)
                 .expect("valid limits");
             let server = Server::new(
                 room,
                 link_ends,
-                gate,
+                permission,
                 Memory::new(),
                 Numbers(1),
                 TimeStep::MILLISECOND,
             );
             Tasks {
-                pulses: RefCell::new(Pulses::new(stage, take, gate, TICK)),
+                pulses: RefCell::new(Pulses::new(stage, take, permission, TICK)),
                 device: RefCell::new(Device::new(controller, tick_ends, Deadline::new(TICK, 1))),
                 server: RefCell::new(server),
             }

@@ -1,6 +1,7 @@
-//! An oracle of the limits that watches the electrodes and hears what the host says, and knows nothing else of the
-//! stimulator: neither its code nor its state. Limits are written out again, and every time is its own. A session is told
-//! by pulses that were put out. That a tick says it is off only makes it stricter: nothing may flow then.
+//! An oracle of the limits that watches the electrodes and hears what the host says, and knows
+//! nothing else of the stimulator: neither its code nor its state. Limits are written out again,
+//! and every time is its own. A session is told by pulses that were put out. That a tick says it is
+//! off only makes it stricter: nothing may flow then.
 
 mod channel;
 mod session;
@@ -41,11 +42,12 @@ pub struct Bounds {
     pub tick_us: u64,
 }
 
-/// For how long after something else was asked for, a pulse of before may still begin: the longest pulse of another
-/// channel, a step, and a tick.
+/// For how long after something else was asked for, a pulse of before may still begin: the longest
+/// pulse of another channel, a step, and a tick.
 const BEHIND_US: u64 = 12_000;
 const FOR_EVER: u64 = u64::MAX / 2;
-/// A pulse that is cut short leaves its electrodes connected to each other for so long, up to a step.
+/// A pulse that is cut short leaves its electrodes connected to each other for so long, up to a
+/// step.
 const DISCHARGE_US: u64 = 20_000 - 125;
 
 /// A phase with current.
@@ -64,7 +66,8 @@ pub struct Patient {
     now_us: u64,
     flow: Option<Flow>,
     flow_since_us: u64,
-    /// Since when electrodes of a channel are connected to each other after a pulse that was cut short.
+    /// Since when electrodes of a channel are connected to each other after a pulse that was cut
+    /// short.
     discharges: Option<(usize, u64)>,
     /// The host has armed, and nothing has ended it since.
     armed: bool,
@@ -187,7 +190,8 @@ impl Patient {
         Ok(())
     }
 
-    /// The longest period of the trains with current that are asked for, and not too old; none without any.
+    /// The longest period of the trains with current that are asked for, and not too old; none
+    /// without any.
     fn longest_asked_us(&self, now_us: u64) -> Option<u64> {
         let rows = now_us <= self.row_us + self.bounds.rows_us;
         let drives = now_us <= self.drive_us + self.bounds.drives_us;

@@ -17,7 +17,7 @@ const SECTOR: usize = BYTES / 2;
 /// A part's flash.
 struct Part {
     kept: Vec<u8>,
-    /// Lines of its data cache, sixteen bytes each.
+    /// LinkQueues of its data cache, sixteen bytes each.
     cached: std::cell::RefCell<HashMap<usize, Vec<u8>>>,
     /// Its clock, which advances when polled.
     counts: Cell<u32>,

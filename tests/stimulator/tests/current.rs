@@ -1,7 +1,8 @@
-//! Current that should not be there: what strangers found by driving the stimulator through its public types.
+//! Current that should not be there: what strangers found by driving the stimulator through its
+//! public types.
 
 use firmware::safety::{Fault, NotArmed, Observed, Requested, State};
-use firmware::{Controller, Gate, LimitError, Limits, PlanQueue, Stimulus};
+use firmware::{Controller, LimitError, Limits, Permission, PlanQueue, Stimulus};
 use model_tests::muscles::config;
 use proptest::prelude::*;
 use stimulator_tests::bench::{Bench, PutOut, stimulus};
@@ -33,14 +34,15 @@ fn an_amplitude_beyond_the_current_source_is_refused_in_the_first_tick() {
 
     // And limits beyond it when the controller is built.
     let queue: &'static mut PlanQueue = Box::leak(Box::default());
-    let gate: &'static Gate = Box::leak(Box::default());
+    let permission: &'static Permission = Box::leak(Box::default());
     let (give, _) = queue.split();
-    let error = Controller::new(Limits::SURFACE, 1000, Fault::Boot, SCALE, give, gate).err();
+    let error = Controller::new(Limits::SURFACE, 1000, Fault::Boot, SCALE, give, permission).err();
     let expected = LimitError { field: "amplitude_ua", value: 100_000, least: 1, most: 50_000 };
     assert_eq!(error, Some(expected));
 }
 
-/// Counts rise by no more than the limit from one pulse of a channel to the next; the last is how many rose.
+/// Counts rise by no more than the limit from one pulse of a channel to the next; the last is how
+/// many rose.
 fn rises(put_out: &[PutOut]) -> usize {
     let (mut last, mut rose) = ([0; 4], 0);
     for pulse in put_out {
@@ -106,7 +108,8 @@ proptest! {
         rises(&bench.put_out);
     }
 
-    /// Every legal command fits into the queue of plans, however long a pulse takes and short a tick is.
+    /// Every legal command fits into the queue of plans, however long a pulse takes and short a
+    /// tick is.
     #[test]
     fn plans_that_change_every_tick_are_no_fault(
         tick_us in 500..=2000_u32,
@@ -174,7 +177,8 @@ fn stopping_and_arming_again_is_no_way_round_frequency_or_session() {
     }
 }
 
-/// A rest begins where the next pulse would have come: off between two pulses of a slow train is none.
+/// A rest begins where the next pulse would have come: off between two pulses of a slow train is
+/// none.
 #[test]
 fn stopping_between_two_pulses_is_no_rest() {
     let limits = Limits { session_ms: 2_900, rest_ms: 300, stuck_ms: 2_900, ..BOARD };
@@ -257,8 +261,9 @@ fn requests_are_put_out_until_they_are_as_old_as_they_may_be() {
     until(Fault::StaleDrive, |r, age| r.drive_age_us = age, 1_000_000);
 }
 
-/// Whenever the tick stops calling: no phase begins that is switched off by the interrupt that begins it. What the
-/// converter is told after its first word is a problem that the bench looks for.
+/// Whenever the tick stops calling: no phase begins that is switched off by the interrupt that
+/// begins it. What the converter is told after its first word is a problem that the bench looks
+/// for.
 #[test]
 fn a_permission_that_runs_out_begins_no_phase() {
     for width_us in [20, 40, 100, 250, 480] {
@@ -295,7 +300,8 @@ fn the_least_rise_that_limits_allow_still_rises() {
     assert_eq!(last, 80, "1 mA, in steps of 8 counts");
 }
 
-/// Ticks that ask for nothing within a pulse train are no rest, and do not make a stuck sensor work.
+/// Ticks that ask for nothing within a pulse train are no rest, and do not make a stuck sensor
+/// work.
 #[test]
 fn asking_for_nothing_between_pulses_is_no_way_round_the_session() {
     let limits = Limits { session_ms: 3_000, rest_ms: 10_000, stuck_ms: 2_000, ..BOARD };

@@ -1,8 +1,8 @@
-//! Random sequences of messages, sensors that fail, silences and late ticks, through the public types; and an oracle
-//! of the limits at the electrodes.
+//! Random sequences of messages, sensors that fail, silences and late ticks, through the public
+//! types; and an oracle of the limits at the electrodes.
 //!
-//! `VM_MESSAGES=10000000 cargo test --release -p stimulator-tests --test oracle -- --nocapture` sends ten million;
-//! where it is not set there are 200,000.
+//! `VM_MESSAGES=10000000 cargo test --release -p stimulator-tests --test oracle -- --nocapture`
+//! sends ten million; where it is not set there are 200,000.
 
 use firmware::link::{
     Answer, Electrode, Message, Mode, NO_SESSION, Readings, Receiver, Request, RowInputs,
@@ -10,7 +10,8 @@ use firmware::link::{
 };
 use firmware::safety::{CHANNELS, Fault, State};
 use firmware::{
-    Controller, Deadline, Device, Gate, Limits, Lines, MUSCLE, PlanQueue, Pulses, Server, Stimulus,
+    Controller, Deadline, Device, Limits, LinkQueues, MUSCLE, Permission, PlanQueue, Pulses,
+    Server, Stimulus,
 };
 use std::collections::{HashMap, VecDeque};
 use stimulator_tests::device::{LIMITS as BOARD, Memory, Numbers};
@@ -142,24 +143,24 @@ impl World {
     fn boot() -> Self {
         let (stage, electrodes) = stage();
         let plans: &'static mut PlanQueue = Box::leak(Box::default());
-        let gate: &'static Gate = Box::leak(Box::default());
-        let lines: &'static mut Lines = Box::leak(Box::default());
+        let permission: &'static Permission = Box::leak(Box::default());
+        let link_queues: &'static mut LinkQueues = Box::leak(Box::default());
         let (give, take) = plans.split();
-        let (tick_ends, link_ends) = lines.split(Box::leak(Box::default()));
-        let controller = Controller::new(LIMITS, TICK as u32, Fault::Boot, SCALE, give, gate);
+        let (tick_ends, link_ends) = link_queues.split(Box::leak(Box::default()));
+        let controller = Controller::new(LIMITS, TICK as u32, Fault::Boot, SCALE, give, permission);
         let controller = controller.expect("valid limits");
         let deadline = Deadline::new(TICK as u32, 1);
         let mut world = Self {
             server: Server::new(
                 Box::leak(Box::default()),
                 link_ends,
-                gate,
+                permission,
                 Memory::new(),
                 Numbers(1),
                 TimeStep::MILLISECOND,
             ),
             device: Device::new(controller, tick_ends, deadline),
-            pulses: Pulses::new(stage, take, gate, TICK as u32),
+            pulses: Pulses::new(stage, take, permission, TICK as u32),
             electrodes,
             patient: Patient::new(BOUNDS, OF_ROWS),
             now_us: 0,

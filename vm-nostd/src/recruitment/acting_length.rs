@@ -1,7 +1,7 @@
 //! The length that the activation-frequency relation of a motor unit takes.
 //!
-//! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own L_eff:
-//! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
+//! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own
+//! L_eff: dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
 use super::Moment;
 use crate::checksum::{Summed, summed};
@@ -39,8 +39,8 @@ pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError>;
 
-    /// Advances it by one tick, in the middle of which Af of the unit is `activation`. None where it is
-    /// that of the fascicles.
+    /// Advances it by one tick, in the middle of which Af of the unit is `activation`. None where
+    /// it is that of the fascicles.
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
         state: &mut Self::State,
@@ -87,7 +87,7 @@ pub struct EffectiveLengthCoefficients<S: Scalar> {
 summed!([S: Scalar] EffectiveLengthCoefficients<S> { rate, least_inactive, range });
 
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
-    type State = S::Slow;
+    type State = S::LagState;
     type Coefficients = EffectiveLengthCoefficients<S>;
     const WORDS: usize = S::SLOW_WORDS;
     const MODE: u32 = 4;
@@ -100,26 +100,26 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         }
     }
 
-    fn at_rest() -> S::Slow {
-        S::ONE.slow()
+    fn at_rest() -> S::LagState {
+        S::ONE.lag_state()
     }
 
-    fn words(state: S::Slow) -> impl Iterator<Item = S::Bits> {
-        S::slow_words(state)
+    fn words(state: S::LagState) -> impl Iterator<Item = S::Bits> {
+        S::lag_state_words(state)
     }
 
     fn restored<I: Iterator<Item = S::Bits>>(
         coefficients: &Self::Coefficients,
         saved: &mut Saved<I>,
-    ) -> Result<S::Slow, RestoreError> {
-        saved.slow(&coefficients.range)
+    ) -> Result<S::LagState, RestoreError> {
+        saved.lag_state(&coefficients.range)
     }
 
-    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half of the tick L is
-    /// where it is in the middle of that, and the rest is exact: x → x/√(1 + 2 x² t/τ).
+    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half of the
+    /// tick L is where it is in the middle of that, and the rest is exact: x → x/√(1 + 2 x² t/τ).
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
-        state: &mut S::Slow,
+        state: &mut S::LagState,
         activation: S,
         moment: &Moment<S, N>,
     ) -> Option<S> {
@@ -130,12 +130,12 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         let step = |length: S, from: S| {
             let distance = coefficients.range.clip(length).0 - from;
             let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);
-            (distance, grown.ln().half().done())
+            (distance, grown.ln().half().lag_response())
         };
         let first = step(moment.fascicle_length - quarter, before);
-        let middle = S::of(S::moved(*state, first.0, first.1));
+        let middle = S::of(S::advanced(*state, first.0, first.1));
         let second = step(moment.fascicle_length + quarter, middle);
-        *state = S::moved_by_two(*state, first, second);
+        *state = S::advanced_by_two(*state, first, second);
         Some(middle)
     }
 }

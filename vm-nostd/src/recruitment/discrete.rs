@@ -70,11 +70,11 @@ pub struct DiscreteState<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct UnitState<S: Scalar, L> {
     /// f_int, f0.5.
-    intermediate_frequency: S::Slow,
+    intermediate_frequency: S::LagState,
     /// f_eff, f0.5.
-    effective_frequency: S::Slow,
+    effective_frequency: S::LagState,
     /// S.
-    sag: S::Slow,
+    sag: S::LagState,
     activity: Activity<S>,
     acting_length: L,
 }
@@ -118,9 +118,9 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
         let units = self.units.map(|unit| UnitState {
-            intermediate_frequency: S::ZERO.slow(),
-            effective_frequency: S::ZERO.slow(),
-            sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).slow(),
+            intermediate_frequency: S::ZERO.lag_state(),
+            effective_frequency: S::ZERO.lag_state(),
+            sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).lag_state(),
             activity: Activity::NONE,
             acting_length: A::at_rest(),
         });
@@ -137,9 +137,9 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             let frequencies = Range { least: S::ZERO, most: unit.firing.frequency(S::ONE) };
             let levels = fibers.get(unit.fiber).map_or(super::share(), |fiber| fiber.sag.range());
             *kept = UnitState {
-                intermediate_frequency: saved.slow(&frequencies)?,
-                effective_frequency: saved.slow(&frequencies)?,
-                sag: saved.slow(&levels)?,
+                intermediate_frequency: saved.lag_state(&frequencies)?,
+                effective_frequency: saved.lag_state(&frequencies)?,
+                sag: saved.lag_state(&levels)?,
                 activity: Activity::restored(saved)?,
                 acting_length: A::restored(&unit.acting_length, saved)?,
             };
@@ -216,9 +216,9 @@ impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         self.units.into_iter().flat_map(|unit| {
-            S::slow_words(unit.intermediate_frequency)
-                .chain(S::slow_words(unit.effective_frequency))
-                .chain(S::slow_words(unit.sag))
+            S::lag_state_words(unit.intermediate_frequency)
+                .chain(S::lag_state_words(unit.effective_frequency))
+                .chain(S::lag_state_words(unit.sag))
                 .chain(unit.activity.words())
                 .chain(A::words(unit.acting_length))
         })

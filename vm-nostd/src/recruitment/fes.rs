@@ -107,7 +107,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         // Af takes the frequency as it is: where that steps, so does Af.
         let first = self.first_frequency(input.stimulation_frequency);
         let jumps = first != S::of(state.shared);
-        state.shared = first.slow();
+        state.shared = first.lag_state();
         let kept = state.fibers.iter_mut();
         for (((unit, kept), fiber), yieldings) in
             self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)

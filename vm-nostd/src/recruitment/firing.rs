@@ -1,5 +1,5 @@
-//! Firing of what is recruited naturally: f_env rises linearly with raw activation, from fmin at the
-//! threshold Uth to fmax at U = 1; below Uth it is 0.
+//! Firing of what is recruited naturally: f_env rises linearly with raw activation, from fmin at
+//! the threshold Uth to fmax at U = 1; below Uth it is 0.
 
 use crate::checksum::summed;
 use crate::params::FiberType;
@@ -33,8 +33,8 @@ impl<S: Scalar> Firing<S> {
         }
     }
 
-    /// f_env (f0.5) at a raw activation. From fmax down: it is met at U = 1 however near to that the
-    /// threshold is.
+    /// f_env (f0.5) at a raw activation. From fmax down: it is met at U = 1 however near to that
+    /// the threshold is.
     pub(super) fn frequency(&self, activation: S) -> S {
         if activation < self.threshold {
             return S::ZERO;

@@ -11,7 +11,7 @@ use crate::state::{RestoreError, Saved};
 pub struct LumpedState<S: Scalar, const N: usize> {
     /// What the types share: U_eff, 0..1 (natural continuous); f_env of the first in the last tick, f0.5
     /// (intramuscular FES).
-    pub(crate) shared: S::Slow,
+    pub(crate) shared: S::LagState,
     pub(super) fibers: [FiberState<S>; N],
     /// Af of each type.
     pub(super) activities: [Activity<S>; N],
@@ -21,21 +21,21 @@ pub struct LumpedState<S: Scalar, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberState<S: Scalar> {
     /// f_int, f0.5 (intramuscular FES: intermediate recruitment, 0..1).
-    pub(super) intermediate_frequency: S::Slow,
+    pub(super) intermediate_frequency: S::LagState,
     /// f_eff, f0.5 (intramuscular FES: recruitment, 0..1).
-    pub(super) effective_frequency: S::Slow,
+    pub(super) effective_frequency: S::LagState,
     /// S.
-    pub(super) sag: S::Slow,
+    pub(super) sag: S::LagState,
 }
 
 impl<S: Scalar, const N: usize> LumpedState<S, N> {
     pub(super) fn at_rest(fibers: &[Fiber<S>; N]) -> Self {
         Self {
-            shared: S::ZERO.slow(),
+            shared: S::ZERO.lag_state(),
             fibers: fibers.each_ref().map(|fiber| FiberState {
-                intermediate_frequency: S::ZERO.slow(),
-                effective_frequency: S::ZERO.slow(),
-                sag: fiber.sag.resting_level.slow(),
+                intermediate_frequency: S::ZERO.lag_state(),
+                effective_frequency: S::ZERO.lag_state(),
+                sag: fiber.sag.resting_level.lag_state(),
             }),
             activities: [Activity::NONE; N],
         }
@@ -49,13 +49,13 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
         frequencies: [Range<S>; N],
     ) -> Result<Self, RestoreError> {
         let mut state = Self::at_rest(fibers);
-        state.shared = saved.slow(&shared)?;
+        state.shared = saved.lag_state(&shared)?;
         let units = state.fibers.iter_mut().zip(&mut state.activities);
         for (((kept, activity), fiber), range) in units.zip(fibers).zip(&frequencies) {
             *kept = FiberState {
-                intermediate_frequency: saved.slow(range)?,
-                effective_frequency: saved.slow(range)?,
-                sag: saved.slow(&fiber.sag.range())?,
+                intermediate_frequency: saved.lag_state(range)?,
+                effective_frequency: saved.lag_state(range)?,
+                sag: saved.lag_state(&fiber.sag.range())?,
             };
             *activity = Activity::restored(saved)?;
         }
@@ -68,10 +68,10 @@ impl<S: Scalar, const N: usize> RecruitmentState<S> for LumpedState<S, N> {
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         let units = self.fibers.into_iter().zip(self.activities);
-        S::slow_words(self.shared).chain(units.flat_map(|(fiber, activity)| {
-            S::slow_words(fiber.intermediate_frequency)
-                .chain(S::slow_words(fiber.effective_frequency))
-                .chain(S::slow_words(fiber.sag))
+        S::lag_state_words(self.shared).chain(units.flat_map(|(fiber, activity)| {
+            S::lag_state_words(fiber.intermediate_frequency)
+                .chain(S::lag_state_words(fiber.effective_frequency))
+                .chain(S::lag_state_words(fiber.sag))
                 .chain(activity.words())
         }))
     }

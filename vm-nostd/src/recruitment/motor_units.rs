@@ -77,9 +77,9 @@ pub struct MotorUnits<const UNITS: usize> {
 }
 
 impl<const UNITS: usize> MotorUnits<UNITS> {
-    /// The units that divide the types of a muscle by a rule for each type. Refused where a type has
-    /// none, where all together are more than `UNITS`, where a size is out of its range, and where a unit
-    /// has less than 1e-9 of its type.
+    /// The units that divide the types of a muscle by a rule for each type. Refused where a type
+    /// has none, where all together are more than `UNITS`, where a size is out of its range, and
+    /// where a unit has less than 1e-9 of its type.
     pub fn new<const N: usize>(
         params: &MuscleParams<N>,
         sizes: [UnitSizes<'_>; N],

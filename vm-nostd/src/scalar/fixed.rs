@@ -28,7 +28,7 @@ const PATH_UNITS: f64 = 512e6;
 const UNITS: f64 = (1 << 24) as f64;
 const QUANTITY_UNITS: f64 = (1 << 16) as f64;
 /// Q8.56 has 32 more fractional bits than Q8.24.
-const SLOW_SHIFT: u32 = 32;
+const LAG_SHIFT: u32 = 32;
 
 impl Sealed for Fixed {}
 
@@ -50,7 +50,7 @@ impl Scalar for Fixed {
     type Bits = u32;
     type Factor = Factor;
     /// Q8.56.
-    type Slow = i64;
+    type LagState = i64;
     /// Q0.32.
     type Share = u32;
     /// µm, in steps of 2 nm, to 4.19 m.
@@ -143,8 +143,8 @@ impl Scalar for Fixed {
         (Self::from_bits(value), Self::from_bits(slope))
     }
     #[inline(always)]
-    fn of_one_and(self, factor: Self) -> Self {
-        Self::from_bits(quotient::of_one_and(factor.to_bits(), self.to_bits()))
+    fn reciprocal_of_one_plus(self, factor: Self) -> Self {
+        Self::from_bits(quotient::reciprocal_of_one_plus(factor.to_bits(), self.to_bits()))
     }
     #[inline(always)]
     fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self) {
@@ -154,24 +154,24 @@ impl Scalar for Fixed {
         (Self::from_bits(root), Self::from_bits(share))
     }
 
-    fn slow(self) -> i64 {
-        i64::from(self.to_bits()) << SLOW_SHIFT
+    fn lag_state(self) -> i64 {
+        i64::from(self.to_bits()) << LAG_SHIFT
     }
     fn of(slow: i64) -> Self {
-        let (whole, half) = ((slow >> SLOW_SHIFT) as i32, (slow as u32 >> (SLOW_SHIFT - 1)) as i32);
+        let (whole, half) = ((slow >> LAG_SHIFT) as i32, (slow as u32 >> (LAG_SHIFT - 1)) as i32);
         Self::from_bits(whole.saturating_add(half))
     }
-    fn moved(slow: i64, difference: Self, share: u32) -> i64 {
+    fn advanced(slow: i64, difference: Self, share: u32) -> i64 {
         // The result lies between two representable numbers, even if an intermediate sum wraps.
         slow.wrapping_add(i64::from(difference.to_bits()) * i64::from(share))
     }
-    fn moved_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
-        Self::moved(Self::moved(slow, first.0, first.1), second.0, second.1)
+    fn advanced_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
+        Self::advanced(Self::advanced(slow, first.0, first.1), second.0, second.1)
     }
     fn share(value: f64) -> u32 {
         (value * 4_294_967_296.0 + 0.5) as u32
     }
-    fn done(self) -> u32 {
+    fn lag_response(self) -> u32 {
         u32::MAX - exponential::decay(self.to_bits())
     }
     /// Each within 2^-24: halving x may cut off half an ULP, which is squared.
@@ -183,14 +183,14 @@ impl Scalar for Fixed {
         // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
         let delayed = |left: u32, shift: u32| ((x as u64 * u64::from(left)) >> shift) as u32;
         [
-            Lags { done: u32::MAX - left_at_half, delayed: delayed(left_at_half, 25) },
-            Lags { done: u32::MAX - left, delayed: delayed(left, 24) },
+            Lags { response: u32::MAX - left_at_half, delayed: delayed(left_at_half, 25) },
+            Lags { response: u32::MAX - left, delayed: delayed(left, 24) },
         ]
     }
-    fn slow_words(slow: i64) -> impl Iterator<Item = u32> {
+    fn lag_state_words(slow: i64) -> impl Iterator<Item = u32> {
         [slow as u32, (slow >> 32) as u32].into_iter()
     }
-    fn slow_from_words(words: &mut impl Iterator<Item = u32>) -> Option<i64> {
+    fn lag_state_from_words(words: &mut impl Iterator<Item = u32>) -> Option<i64> {
         let low = i64::from(words.next()?);
         Some(i64::from(words.next()? as i32) << 32 | low)
     }
@@ -271,11 +271,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_two_lags_have_done_is_within_2_to_the_minus_24() {
+    fn responses_of_two_lags_are_within_an_ulp() {
         for bits in (0..=40 << 20).step_by(37) {
             let x = f64::from(bits) / UNITS;
             for (lags, x) in Fixed::from_bits(bits).lags().into_iter().zip([0.5 * x, x]) {
-                let found = [lags.done, lags.delayed].map(f64::from);
+                let found = [lags.response, lags.delayed].map(f64::from);
                 for (found, exact) in found.into_iter().zip([-(-x).exp_m1(), x * (-x).exp()]) {
                     let off = (found - exact * 4_294_967_296.0).abs();
                     assert!(off <= 256.0, "{x}: {off} units of 2^-32");

@@ -16,7 +16,7 @@ macro_rules! float {
         impl Scalar for $float {
             type Bits = $bits;
             type Factor = Self;
-            type Slow = Self;
+            type LagState = Self;
             type Share = Self;
             type PathLength = Self;
             type Quantity = Self;
@@ -101,7 +101,7 @@ macro_rules! float {
             fn weibull(self) -> (Self, Self) {
                 $kernels::weibull(self)
             }
-            fn of_one_and(self, factor: Self) -> Self {
+            fn reciprocal_of_one_plus(self, factor: Self) -> Self {
                 1.0 / (1.0 + factor * self)
             }
             #[inline(always)]
@@ -131,40 +131,40 @@ macro_rules! float {
             fn abs(self) -> Self {
                 <$float>::abs(self)
             }
-            fn slow(self) -> Self {
+            fn lag_state(self) -> Self {
                 self
             }
             fn of(slow: Self) -> Self {
                 slow
             }
-            fn moved(slow: Self, difference: Self, share: Self) -> Self {
+            fn advanced(slow: Self, difference: Self, share: Self) -> Self {
                 slow + difference * share
             }
-            fn moved_by_two(slow: Self, first: (Self, Self), second: (Self, Self)) -> Self {
+            fn advanced_by_two(slow: Self, first: (Self, Self), second: (Self, Self)) -> Self {
                 // Compares changes: those of a slow lag are far below the ULP of its value.
                 slow + (first.0 * first.1 + second.0 * second.1)
             }
             fn share(value: f64) -> Self {
                 value as Self
             }
-            fn done(self) -> Self {
+            fn lag_response(self) -> Self {
                 $kernels::one_minus_exp(self)
             }
             /// In `f32` each within 3e-6 of its value.
             #[inline(always)]
             fn lags(self) -> [Lags<Self>; 2] {
                 let half = self * 0.5;
-                let done_by_half = $kernels::soon_done(half);
-                let done = done_by_half * (2.0 - done_by_half);
+                let response_at_half = $kernels::short_lag_response(half);
+                let response = response_at_half * (2.0 - response_at_half);
                 [
-                    Lags { done: done_by_half, delayed: half * (1.0 - done_by_half) },
-                    Lags { done, delayed: self * (1.0 - done) },
+                    Lags { response: response_at_half, delayed: half * (1.0 - response_at_half) },
+                    Lags { response, delayed: self * (1.0 - response) },
                 ]
             }
-            fn slow_words(slow: Self) -> impl Iterator<Item = Self::Bits> {
+            fn lag_state_words(slow: Self) -> impl Iterator<Item = Self::Bits> {
                 core::iter::once(slow.to_bits())
             }
-            fn slow_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
+            fn lag_state_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
                 words.next().map(<$float>::from_bits)
             }
 
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_make_up_for_the_residual_on_the_branch_through_0() {
+    fn roots_cancel_the_residual_on_the_branch_through_0() {
         over_balances(|residual, line, steepness, half_curvature| {
             let (root, share) = residual.hyperbola_root(line, steepness, half_curvature);
             let below = 1.0 - half_curvature / steepness * root;
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_in_f32_are_those_in_f64_but_for_what_cancels() {
+    fn roots_in_f32_agree_with_f64_except_for_cancellation() {
         over_balances(|residual, line, steepness, half_curvature| {
             let [r, l, s, h] = [residual, line, steepness, half_curvature].map(|x| x as f32);
             let found = r.hyperbola_root(l, s, h);
@@ -294,11 +294,11 @@ mod tests {
     }
 
     #[test]
-    fn what_two_lags_have_done_is_within_3e6th_of_its_value() {
+    fn responses_of_two_lags_have_a_relative_error_below_3e_6() {
         for step in 1..=250_000 {
             let x = (f64::from(step) * 1e-5) as f32;
             for (lags, x) in x.lags().into_iter().zip([0.5 * f64::from(x), f64::from(x)]) {
-                let found = [lags.done, lags.delayed].map(f64::from);
+                let found = [lags.response, lags.delayed].map(f64::from);
                 for (found, exact) in found.into_iter().zip([-(-x).exp_m1(), x * (-x).exp()]) {
                     assert!((found / exact - 1.0).abs() <= 3e-6, "{x}: {found} {exact}");
                 }

@@ -41,7 +41,8 @@ pub(super) struct Channel {
     pub last: Option<Pulse>,
     /// Counts times µs since charge was last even.
     pub charge: i64,
-    /// When phases of the last second ended, and their squares of counts times µs; and the sum of these.
+    /// When phases of the last second ended, and their squares of counts times µs; and the sum of
+    /// these.
     heat: VecDeque<(u64, u64)>,
     heat_sum: u64,
     pub asked: VecDeque<Asked>,
@@ -50,8 +51,8 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// A phase has ended. The mean square of a second, the strongest pulse in it aside: a second may have a pulse
-    /// more than its frequency says.
+    /// A phase has ended. The mean square of a second, the strongest pulse in it aside: a second
+    /// may have a pulse more than its frequency says.
     pub fn heats(&mut self, now_us: u64, square: u64, most: u64) -> Result<(), String> {
         self.heat.push_back((now_us, square));
         self.heat_sum += square;

@@ -21,7 +21,8 @@ impl Session {
     pub fn pulse(&mut self, now_us: u64, period_us: Option<u64>, rest_us: u64) {
         if let Some(last_us) = self.last_us {
             let gap_us = now_us - last_us;
-            // The next pulse of a train was due a period after the last: only then does a rest begin.
+            // The next pulse of a train was due a period after the last: only then does a rest
+            // begin.
             if gap_us + BEHIND_US >= self.period_us + rest_us {
                 self.us = 0;
             } else if self.goes_on {

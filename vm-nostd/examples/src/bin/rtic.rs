@@ -10,7 +10,8 @@ mod app {
     use cortex_m::peripheral::syst::SystClkSource;
     use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
     use vm_nostd::{
-        Class, FesMuscle, FiberParams, Fixed, Input, IntramuscularFes, MuscleParams, State, TimeStep,
+        Class, FesMuscle, FiberParams, Fixed, Input, IntramuscularFes, MuscleParams, State,
+        TimeStep,
     };
 
     const PARAMS: MuscleParams<2> = MuscleParams {

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exponentials_of_all_numbers_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+    fn exp_is_within_an_ulp_or_saturates() {
         let found = worst_between(-18, 5, |x| {
             let exact = (f64::from(x) / UNIT).exp() * UNIT;
             let saturated = exact.min(f64::from(i32::MAX));
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn all_decays_are_within_8_units_of_2_to_the_minus_32() {
+    fn all_decays_are_within_8_ulp() {
         let found = worst_between(0, 23, |x| {
             let exact = (-f64::from(x.max(0)) / UNIT).exp() * 4_294_967_296.0;
             (f64::from(decay(x)) - exact).abs()

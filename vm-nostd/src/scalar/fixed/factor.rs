@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn factors_of_any_magnitude_scale_to_the_nearest_unit() {
+    fn factors_of_any_magnitude_round_to_nearest() {
         for exponent in -40..=29 {
             for mantissa in [1.0, -1.0, 1.234_567_890_123, -1.999_999_999_999] {
                 let value = mantissa * 2_f64.powi(exponent);

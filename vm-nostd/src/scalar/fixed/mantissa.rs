@@ -55,8 +55,8 @@ fn reduced(m: u32) -> (usize, u32, i32) {
 ///
 /// # Scaling and overflow
 /// c (1 - r + r² - r³ + r⁴) is c/(1 + r) to r⁵ < 2^-35; for r⁴, of at most 2^-28, r² times the
-/// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product with
-/// c/2, in Q0.31, below 2^25 of either sign: the sum does not wrap around.
+/// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product
+/// with c/2, in Q0.31, below 2^25 of either sign: the sum does not wrap around.
 #[inline(always)]
 pub(super) fn reciprocal(m: u32) -> u32 {
     let (_, c, r) = reduced(m);
@@ -72,9 +72,9 @@ const LN_2: i64 = 1_488_522_236;
 /// ln x in Q8.24 of a positive number, within 1 ULP; of 0 and below, that of one ULP.
 ///
 /// # Scaling and overflow
-/// x is shifted left until its first bit is set; the power of two taken out is -24 to 6. The mantissa's
-/// logarithm c + r - r²/2 + r³/3, to r⁴/4 < 2^-30, is below 0.7 in Q1.31. The sum, below 17, has 36
-/// bits of 64.
+/// x is shifted left until its first bit is set; the power of two taken out is -24 to 6. The
+/// mantissa's logarithm c + r - r²/2 + r³/3, to r⁴/4 < 2^-30, is below 0.7 in Q1.31. The sum, below
+/// 17, has 36 bits of 64.
 pub(super) fn ln(x: i32) -> i32 {
     let x = x.max(1) as u32;
     let zeros = x.leading_zeros();
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reciprocals_of_all_mantissas_are_within_three_units_and_at_most_one() {
+    fn reciprocals_of_all_mantissas_are_within_three_ulp() {
         let found = worst(1 << 31, u32::MAX.into(), |m| {
             let found = reciprocal(m as u32);
             let error = (f64::from(found) - 2_f64.powi(62) / m as f64).abs();
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn logarithms_of_all_positive_numbers_are_within_a_unit() {
+    fn ln_of_all_positive_numbers_is_within_an_ulp() {
         let found = worst(1, i32::MAX.into(), |x| {
             (f64::from(ln(x as i32)) - (x as f64 / UNIT).ln() * UNIT).abs()
         });

@@ -8,11 +8,11 @@ pub(super) const FRACTION: u32 = 24;
 /// 1 in Q8.24.
 pub(super) const ONE: i32 = 1 << FRACTION;
 
-/// Fixed point for cores without a floating-point unit: Q8.24, from -128 to 128 with an ULP of 6e-8, like
-/// `f32` near 1. Sums and products saturate: nothing wraps around.
+/// Fixed point for cores without a floating-point unit: Q8.24, from -128 to 128 with an ULP of
+/// 6e-8, like `f32` near 1. Sums and products saturate: nothing wraps around.
 ///
-/// It converts from and to [`I8F24`]. Products round toward minus infinity, as of that type, in fewer
-/// instructions; on overflow they saturate to within 255 ULP of the range's end.
+/// It converts from and to [`I8F24`]. Products round toward minus infinity, as of that type, in
+/// fewer instructions; on overflow they saturate to within 255 ULP of the range's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fixed(I8F24);
 
@@ -93,9 +93,9 @@ pub(super) fn high(a: i32, b: i32) -> i32 {
 /// Two words without their last 24 bits: rounded toward minus infinity, saturated.
 ///
 /// # Scaling and overflow
-/// The result fits if the high word has 24 bits; otherwise the high word is clamped to 24 bits by one
-/// instruction (SSAT). The first byte of the low word is appended in any case, so that an overflow
-/// saturates to within 255 ULP of the range's end.
+/// The result fits if the high word has 24 bits; otherwise the high word is clamped to 24 bits by
+/// one instruction (SSAT). The first byte of the low word is appended in any case, so that an
+/// overflow saturates to within 255 ULP of the range's end.
 #[inline(always)]
 fn number((high, low): (i32, u32)) -> i32 {
     const MOST: i32 = 1 << (FRACTION - 1);
@@ -105,8 +105,8 @@ fn number((high, low): (i32, u32)) -> i32 {
 /// Two words without their last `bits`, 1 to 32: rounded toward minus infinity, saturated.
 ///
 /// # Scaling and overflow
-/// The result fits if shifting the high word left and right again restores it. The check uses 32-bit
-/// words: a 64-bit comparison compiles to twice the instructions.
+/// The result fits if shifting the high word left and right again restores it. The check uses
+/// 32-bit words: a 64-bit comparison compiles to twice the instructions.
 pub(super) fn whole((high, low): (i32, u32), bits: u32) -> i32 {
     let left = 32 - bits;
     let word = (high << left) | (low >> 1 >> (bits - 1)) as i32;
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_are_the_next_lower_numbers_and_saturate() {
+    fn products_round_down_and_saturate() {
         let mut numbers: [i32; 400] = [0; 400];
         let mut state = 1_u64;
         for number in &mut numbers {

@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn polynomials_of_eight_terms_are_within_16_units_and_their_slopes_within_72() {
+    fn polynomials_and_their_slopes_are_within_their_bounds() {
         let mut terms = of_any_length().map(|bits| bits >> 4);
         for _ in 0..2_000 {
             let terms: [i32; 8] = core::array::from_fn(|_| terms.next().expect("endless"));

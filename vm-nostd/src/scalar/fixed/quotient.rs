@@ -58,7 +58,7 @@ pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
 /// Shifted left by z bits, 1 to 22, it is a mantissa; its reciprocal in Q1.31, shifted right by
 /// 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is a unit less.
 #[inline(always)]
-pub(super) fn of_one_and(d: i32, v: i32) -> i32 {
+pub(super) fn reciprocal_of_one_plus(d: i32, v: i32) -> i32 {
     const ONE: i32 = 1 << 16;
     let (high, low) = exact(d, v);
     let sum = ((high + ONE).max(ONE >> 7), low);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn reciprocals_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+    fn reciprocals_are_within_an_ulp_or_saturate() {
         for x in (-10..1_000_000).chain(of_any_length().take(1_000_000)) {
             let found = of_the_bound(reciprocal(x), UNIT / f64::from(x.max(1)));
             assert!(found <= 1.0, "1/{x}: {found} of the bound");
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn ratios_are_within_a_unit_and_2_to_the_minus_28_or_saturate() {
+    fn ratios_are_within_an_ulp_or_saturate() {
         let edges = [0, 1, -1, 7, 1 << 24, i32::MAX, i32::MIN, i32::MAX - 1, 1 << 30, 1 << 17];
         let numbers = || edges.into_iter().chain(of_any_length());
         for n in numbers().take(2_000) {
@@ -100,13 +100,13 @@ mod tests {
     }
 
     #[test]
-    fn reciprocals_of_one_and_a_product_are_within_2_to_the_minus_24_and_of_their_value() {
+    fn reciprocals_of_one_plus_a_product_are_within_their_bound() {
         let numbers = || [0, 1, -1, i32::MAX, i32::MIN].into_iter().chain(of_any_length());
         for d in numbers().take(2_000) {
             for v in numbers().take(2_000) {
                 let sum = 1.0 + f64::from(d) / UNIT * (f64::from(v) / UNIT);
                 let exact = 1.0 / sum.max(2_f64.powi(-7));
-                let found = f64::from(of_one_and(d, v)) / UNIT;
+                let found = f64::from(reciprocal_of_one_plus(d, v)) / UNIT;
                 // The least sum is told from its high word: by 2^-16 at most.
                 let least =
                     if sum < 2_f64.powi(-7) { exact * exact * 2_f64.powi(-16) } else { 0.0 };

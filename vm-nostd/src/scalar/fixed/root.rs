@@ -4,13 +4,14 @@ use super::number::{exact, high};
 use super::quotient::{ratio, word};
 use crate::scalar::series;
 
-/// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend = -half_curvature/steepness,
-/// and 1/(1 + bend u), in Q8.24, saturated; line and steepness are positive. Both are within 2e-7, plus the
-/// effect of 2^-24 of the largest product and of the root on `whole` or `after` under cancellation.
+/// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend =
+/// -half_curvature/steepness, and 1/(1 + bend u), in Q8.24, saturated; line and steepness are
+/// positive. Both are within 2e-7, plus the effect of 2^-24 of the largest product and of the root
+/// on `whole` or `after` under cancellation.
 ///
 /// # Scaling and overflow
-/// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has only
-/// its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
+/// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has
+/// only its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
 /// discriminant, a square of that and four times a product, below 2^60.
 pub(super) fn hyperbola_root(
     residual: i32,
@@ -33,8 +34,8 @@ pub(super) fn hyperbola_root(
     let difference = straight + bent - square;
     let discriminant = wide(difference, difference) + 4 * wide(straight, square);
     let root = square_root(discriminant.max(1) as u64) as i32;
-    // The root is at least |difference|: each sum is smaller only by rounding, and only if both of its
-    // terms are large.
+    // The root is at least |difference|: each sum is smaller only by rounding, and only if both of
+    // its terms are large.
     let whole = (linear + root).max(2 * straight).max(1);
     let after = (whole + 2 * bent).max(2 * square).max(1);
     (ratio(-2 * residual, whole), ratio(whole, after))
@@ -44,8 +45,8 @@ pub(super) fn hyperbola_root(
 const INDEX_BITS: u32 = 7;
 const ENTRIES: usize = 1 << INDEX_BITS;
 
-/// 1/√m at the middle of each 128th of 0..1, Q1.31. No m is in the first quarter: its entries are there
-/// so that an index of seven bits needs no check, and nothing in a tick can panic.
+/// 1/√m at the middle of each 128th of 0..1, Q1.31. No m is in the first quarter: its entries are
+/// there so that an index of seven bits needs no check, and nothing in a tick can panic.
 static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = ENTRIES / 4;
@@ -65,9 +66,9 @@ pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 ///
 /// # Scaling and overflow
 /// x, shifted left by an even number z of bits, 4 to 62, until one of its first two is set, is m in
-/// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y c - 1
-/// below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit 30 on.
-/// y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
+/// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y
+/// c - 1 below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit
+/// 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
 fn square_root(x: u64) -> u32 {
     let zeros = x.leading_zeros() & !1;
     let m = (x << zeros >> 32) as u32;
@@ -87,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn square_roots_are_within_2_to_the_minus_25_and_a_unit() {
+    fn square_roots_are_within_their_bound() {
         let near = (0..60).flat_map(|bits| (0..1000_u64).map(move |i| (1 << bits) + i));
         let spread = (1..1_000_000_u64).map(|i| i * i * i % (1 << 60) + 1);
         for x in near.chain(spread).chain([(1 << 60) - 1]) {
@@ -140,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_comes_the_root_has_the_sign_that_makes_up_for_it() {
+    fn roots_have_the_sign_that_cancels_any_residual() {
         let any = [i32::MIN, i32::MIN + 1, -1 << 24, -1, 0, 1, 1 << 24, i32::MAX - 1, i32::MAX];
         let positive = [1, 168, 1 << 20, 1 << 24, i32::MAX];
         for (residual, half_curvature) in any.iter().flat_map(|a| any.map(|b| (*a, b))) {

@@ -40,7 +40,7 @@ pub(crate) fn one_minus_exp(x: f64) -> f64 {
     -libm::expm1(-x)
 }
 
-pub(super) use one_minus_exp as soon_done;
+pub(super) use one_minus_exp as short_lag_response;
 
 #[cfg(test)]
 mod tests {
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn softplus_and_its_slope_are_within_5e16th_of_their_value() {
+    fn softplus_and_its_slope_have_a_relative_error_below_5e_16() {
         for x in numbers() {
             let (value, slope) = softplus(x);
             let (exact, logistic) = (x.exp().ln_1p(), 1.0 / (1.0 + (-x).exp()));
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn weibulls_distribution_is_within_5e16th_of_its_value_and_its_slope_within_2e16th() {
+    fn weibull_and_its_slope_are_within_the_bounds_of_f64() {
         for x in numbers() {
             let power = x.exp();
             let (value, slope) = weibull(x);

@@ -45,7 +45,7 @@ impl Sum for Demand {
 /// A muscle with its state, its electrode and the checksums of all of it.
 // Copied in memory: a clone would be built on the stack, field by field.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Driven {
+pub(crate) struct PlacedMuscle {
     muscle: BankedMuscle<f32, TYPES>,
     electrode: Option<(Electrode, RecruitmentCurve<f32>)>,
     checksums: [u32; 3],
@@ -53,7 +53,7 @@ pub(crate) struct Driven {
     lost: bool,
 }
 
-impl Driven {
+impl PlacedMuscle {
     /// Builds a muscle at rest on
     /// [`MuscleParams::middle_path`](vm_nostd::MuscleParams::middle_path); the error has field,
     /// value and limit.

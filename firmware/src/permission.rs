@@ -4,7 +4,7 @@ use crate::shared::Flag;
 
 /// Flags between interrupt levels of one core. Each is set by one side and cleared by one side.
 #[derive(Debug, Default)]
-pub struct Gate {
+pub struct Permission {
     /// The tick permits current.
     open: Flag,
     /// The tick has renewed the permission.
@@ -19,7 +19,7 @@ pub struct Gate {
     heard: Flag,
 }
 
-impl Gate {
+impl Permission {
     /// Closed: no current.
     pub const fn new() -> Self {
         let no = Flag::lowered;

@@ -1,9 +1,9 @@
 //! Queues between tick and link, and two banks of muscles. Neither waits for the other.
 
 use crate::configuration::MUSCLES;
-use crate::driven::Driven;
 use crate::guarded::{Guarded, Sum};
 use crate::link::{MOST_WORDS, Readings, Report, RowInputs, Traced};
+use crate::placed_muscle::PlacedMuscle;
 use crate::safety::{CHANNELS, Fault, NotArmed};
 use crate::shared::{Giver, Taker};
 use crate::stimulus::Stimulus;
@@ -16,7 +16,7 @@ const WAITING: usize = 64;
 
 /// Muscles of all places. Tick and link exchange two banks: a muscle is too large for a queue and
 /// for the stack.
-pub(crate) type Bank = [Option<Driven>; MUSCLES];
+pub(crate) type Bank = [Option<PlacedMuscle>; MUSCLES];
 
 /// An order from link to tick.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Sum for RowInputs {
 }
 
 /// All queues between tick and link.
-pub struct Lines {
+pub struct LinkQueues {
     orders: Queue<Order, 2>,
     outcomes: Queue<Outcome, 2>,
     rows: Queue<Guarded<Row>, WAITING>,
@@ -87,13 +87,13 @@ impl Banks {
     }
 }
 
-impl Default for Lines {
+impl Default for LinkQueues {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Lines {
+impl LinkQueues {
     /// Empty.
     pub const fn new() -> Self {
         Self {
@@ -129,7 +129,7 @@ impl Lines {
     }
 }
 
-/// The tick's ends of [`Lines`].
+/// The tick's ends of [`LinkQueues`].
 pub struct TickEnds<'q> {
     pub(crate) orders: Taker<'q, Order>,
     pub(crate) outcomes: Giver<'q, Outcome>,
@@ -138,7 +138,7 @@ pub struct TickEnds<'q> {
     pub(crate) muscles: &'static mut Bank,
 }
 
-/// The link's ends of [`Lines`].
+/// The link's ends of [`LinkQueues`].
 pub struct LinkEnds<'q> {
     pub(crate) orders: Giver<'q, Order>,
     pub(crate) outcomes: Taker<'q, Outcome>,

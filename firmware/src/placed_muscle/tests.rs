@@ -1,6 +1,6 @@
 //! What memory loses of a muscle: any bit, seen at the next check, and never forgotten.
 
-use super::{Demand, Driven};
+use super::{Demand, PlacedMuscle};
 use crate::link::{Electrode, Mode, RowInputs, RowOutputs, Upload};
 use crate::rig::MUSCLE;
 use crate::stimulus::Stimulus;
@@ -13,21 +13,21 @@ const ELECTRODE: Electrode =
 const INPUTS: RowInputs =
     RowInputs { activation: 0.5, path_length: 0.16, stimulation_frequency: 40.0 };
 
-impl Driven {
+impl PlacedMuscle {
     /// Memory loses a bit of it.
     pub(crate) fn lose_a_bit(&mut self) {
         self.checksums[0] ^= 1;
     }
 }
 
-fn driven() -> Driven {
+fn placed() -> PlacedMuscle {
     let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
-    Driven::build(&upload, TimeStep::MILLISECOND).expect("a muscle")
+    PlacedMuscle::build(&upload, TimeStep::MILLISECOND).expect("a muscle")
 }
 
 #[test]
 fn every_field_of_an_electrode_is_in_its_checksum() {
-    assert!(driven().check());
+    assert!(placed().check());
     let changes: [fn(&mut Electrode); 5] = [
         |e| e.channel ^= 1,
         |e| e.width_us ^= 1 << 9,
@@ -36,64 +36,64 @@ fn every_field_of_an_electrode_is_in_its_checksum() {
         |e| e.width_us ^= 1,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut driven = driven();
-        change(&mut driven.electrode.as_mut().expect("an electrode").0);
-        assert!(!driven.check(), "change {index}");
+        let mut placed = placed();
+        change(&mut placed.electrode.as_mut().expect("an electrode").0);
+        assert!(!placed.check(), "change {index}");
     }
-    let mut driven = driven();
+    let mut placed = placed();
     let other = RecruitmentCurveParams { slope: 2.000_001, ..CURVE };
-    driven.electrode.as_mut().expect("an electrode").1 =
+    placed.electrode.as_mut().expect("an electrode").1 =
         RecruitmentCurve::build(&other).expect("a curve");
-    assert!(!driven.check(), "its curve");
-    driven.electrode = None;
-    assert!(!driven.check(), "an electrode that is gone");
+    assert!(!placed.check(), "its curve");
+    placed.electrode = None;
+    assert!(!placed.check(), "an electrode that is gone");
 }
 
 /// Memory that is right again was wrong all the same.
 #[test]
 fn a_muscle_that_has_lost_a_bit_does_not_heal() {
-    let mut driven = driven();
-    let electrode = driven.electrode;
-    driven.electrode.as_mut().expect("an electrode").0.gap_us ^= 1;
-    assert!(!driven.check());
-    driven.electrode = electrode;
-    assert!(!driven.check());
-    assert_eq!(driven.step(&INPUTS), RowOutputs::default());
-    assert_eq!(driven.demand(&INPUTS), Demand::Nothing);
-    assert!(!driven.check());
+    let mut placed = placed();
+    let electrode = placed.electrode;
+    placed.electrode.as_mut().expect("an electrode").0.gap_us ^= 1;
+    assert!(!placed.check());
+    placed.electrode = electrode;
+    assert!(!placed.check());
+    assert_eq!(placed.step(&INPUTS), RowOutputs::default());
+    assert_eq!(placed.demand(&INPUTS), Demand::Nothing);
+    assert!(!placed.check());
     // At rest it is the same muscle, and has still lost it.
-    driven.rest(0.15).expect("a path");
-    assert!(!driven.check());
+    placed.rest(0.15).expect("a path");
+    assert!(!placed.check());
 }
 
 /// A bit of the state, of a coefficient, and one that a tick would hide.
 #[test]
 fn a_tick_does_not_hide_what_was_lost_before() {
     for word in 0..3 {
-        let mut driven = driven();
-        let before = driven.words();
-        let output = driven.step(&INPUTS);
-        assert!(driven.check() && output.force > 0.0 && driven.words() != before);
-        driven.checksums[word] ^= 1;
-        assert!(!driven.check(), "checksum {word}");
+        let mut placed = placed();
+        let before = placed.words();
+        let output = placed.step(&INPUTS);
+        assert!(placed.check() && output.force > 0.0 && placed.words() != before);
+        placed.checksums[word] ^= 1;
+        assert!(!placed.check(), "checksum {word}");
     }
     let other = {
         let mut muscle = MUSCLE;
         muscle.mass *= 1.0001;
         let upload = Upload { mode: Mode::Fes, muscle, electrode: Some(ELECTRODE) };
-        Driven::build(&upload, TimeStep::MILLISECOND).expect("a muscle")
+        PlacedMuscle::build(&upload, TimeStep::MILLISECOND).expect("a muscle")
     };
-    let mut driven = driven();
-    driven.muscle = other.muscle;
+    let mut placed = placed();
+    placed.muscle = other.muscle;
     // Only the state is summed again.
-    let _output = driven.step(&INPUTS);
-    assert!(!driven.check());
+    let _output = placed.step(&INPUTS);
+    assert!(!placed.check());
 }
 
 #[test]
 fn a_row_asks_for_what_recruits_its_activation_at_its_frequency() {
     let demand = |activation, stimulation_frequency| {
-        driven().demand(&RowInputs { activation, stimulation_frequency, ..INPUTS })
+        placed().demand(&RowInputs { activation, stimulation_frequency, ..INPUTS })
     };
     let Demand::Pulses(2, stimulus) = demand(0.5, 40.06) else { panic!("no pulses") };
     // 8 mA for ever, 16 mA for a chronaxie.
@@ -117,7 +117,7 @@ fn a_row_asks_for_what_recruits_its_activation_at_its_frequency() {
 /// Two demands that differ have other checksums.
 #[test]
 fn every_kind_of_demand_is_told_from_the_others() {
-    let Demand::Pulses(channel, stimulus) = driven().demand(&INPUTS) else { panic!("no pulses") };
+    let Demand::Pulses(channel, stimulus) = placed().demand(&INPUTS) else { panic!("no pulses") };
     let zeros =
         Stimulus { amplitude_ua: 0, width_us: 0, gap_us: 0, frequency_tenths_pps: 0, recovery: 0 };
     let demands = [
