@@ -45,6 +45,20 @@ fn the_readmes_are_short() {
     }
 }
 
+/// rustfmt wraps code at 100 columns; its wrapping of comments is not stable.
+#[test]
+fn comments_end_by_column_100() {
+    let mut found = Vec::new();
+    for source in files(&root(), "rs") {
+        for (index, line) in read(&source).lines().enumerate() {
+            if line.trim_start().starts_with("//") && line.chars().count() > 100 {
+                found.push(format!("{}:{}", source.display(), index + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
 /// A heading as the part of a link after `#`.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
