@@ -31,13 +31,13 @@ use crate::yielding::{SPREAD, Speed};
 
 /// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;
-/// The greatest w h of a substep: beyond, a muscle that rings would turn by more than half a period in
-/// it, and no inertia could be fitted to that.
+/// The greatest w h of a substep: beyond, a muscle that rings would turn by more than half a period
+/// in it, and no inertia could be fitted to that.
 const COARSEST_PHASE: f64 = 2.84;
 /// Most of the substeps: only a muscle far from any anatomy asks for more.
 const MOST_SUBSTEPS: u8 = 40;
-/// w h/2 that inertia is fitted for at most: at pi/2 there would be none left, and from here on what
-/// little is left makes errors after a jerk grow again.
+/// w h/2 that inertia is fitted for at most: at pi/2 there would be none left, and from here on
+/// what little is left makes errors after a jerk grow again.
 const FASTEST_RINGING: f64 = 1.1;
 /// The mechanics count as settled if no balance at a velocity foreseen is worse, F0.
 const SETTLED: f64 = 0.5;
@@ -362,7 +362,8 @@ mod tests {
         let counts = [0.1, 0.5, 1.0, 2.0]
             .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
         assert_eq!(counts, [[1, 1, 2], [1, 4, 9], [1, 4, 10], [2, 8, 20]]);
-        // A tendon that is so short that the muscle would ring by more than half a period in a tick.
+        // A tendon that is so short that the muscle would ring by more than half a period in a
+        // tick.
         let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });
         let mass = moving_mass(&PAPER_MUSCLE);
         assert_eq!(substeps(Class::Economy, TimeStep::MILLISECOND, mass, short), 2);

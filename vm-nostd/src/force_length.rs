@@ -85,8 +85,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp at
-/// 0. FL is 1 within 1e-4 there, within 2e-9 for the paper's types.
+/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp
+/// at 0. FL is 1 within 1e-4 there, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.

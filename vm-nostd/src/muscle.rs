@@ -285,8 +285,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// output's status, and the state stays finite whatever comes.
     ///
     /// Slow quantities (excitation, sag, yield, activation, the lengths' influence) are taken at
-    /// the middle of the tick and change across it as they did since the middle before; the mechanics are
-    /// then integrated implicitly on top of them.
+    /// the middle of the tick and change across it as they did since the middle before; the
+    /// mechanics are then integrated implicitly on top of them.
     pub fn step(&self, state: &mut State<S, R, N>, input: Input<S>) -> Output<S> {
         let (input, mut status) = self.domain.admit(input, state.path_length);
         let tendon = &self.contraction.tendon;
@@ -354,8 +354,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         status
     }
 
-    /// Y of each type at the middle of the tick that begins. It is brought to that beginning by the speed in
-    /// the last tick, and goes on for half of this one as it did in the last.
+    /// Y of each type at the middle of the tick that begins. It is brought to that beginning by the
+    /// speed in the last tick, and goes on for half of this one as it did in the last.
     fn yieldings(&self, state: &mut State<S, R, N>) -> [S; N] {
         let mut middles = [S::ONE; N];
         let kept = state.yieldings.iter_mut().zip(&self.fibers);
@@ -368,12 +368,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         middles
     }
 
-    /// Advances recruitment, and puts together the contractile element during the tick of a `moment`,
-    /// whose fascicles are at `start` when it starts and, where the filaments' equations hold,
-    /// `inside` at its middle (all L_ce0).
+    /// Advances recruitment, and puts together the contractile element during the tick of a
+    /// `moment`, whose fascicles are at `start` when it starts and, where the filaments' equations
+    /// hold, `inside` at its middle (all L_ce0).
     ///
-    /// Gains are taken at the middles of the ticks, and change across a tick by as much as from the middle
-    /// before to this one: their slopes by length, frequency and recruitment need not be known.
+    /// Gains are taken at the middles of the ticks, and change across a tick by as much as from the
+    /// middle before to this one: their slopes by length, frequency and recruitment need not be
+    /// known.
     fn contractile(
         &self,
         state: &mut State<S, R, N>,

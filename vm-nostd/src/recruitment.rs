@@ -101,8 +101,8 @@ pub struct Moment<S: Scalar, const N: usize> {
     pub(crate) yieldings: [S; N],
 }
 
-/// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it is:
-/// Af at the tick's middle, for a frequency (f0.5) and Y there, and the curve of its length.
+/// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it
+/// is: Af at the tick's middle, for a frequency (f0.5) and Y there, and the curve of its length.
 #[inline(always)]
 pub(crate) fn activated<S: Scalar>(
     fiber: &Fiber<S>,
@@ -170,8 +170,9 @@ pub struct Recruited<S> {
     pub(crate) activation: S,
     /// Share of the muscle's force that the type's filaments add, at Af FL FV = 1.
     pub(crate) weight: S,
-    /// Change of the weight across the tick, if Af has jumped where the tick starts, as with the stimulation
-    /// frequency. Nothing else jumps: elsewhere the change since the last tick tells that across this one.
+    /// Change of the weight across the tick, if Af has jumped where the tick starts, as with the
+    /// stimulation frequency. Nothing else jumps: elsewhere the change since the last tick tells
+    /// that across this one.
     pub(crate) change_after_jump: Option<S>,
     /// Share for the compression of its thick filaments.
     pub(crate) compression_weight: S,

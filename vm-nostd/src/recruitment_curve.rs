@@ -1,14 +1,16 @@
-//! From a stimulus to activation: how much of a muscle a pulse of so many mA and µs recruits, and
-//! which pulse recruits so much of it.
+//! Recruitment curve: pulse amplitude and width to activation, and back.
 //!
-//! Strength and duration (Lapicque 1907): a pulse of amplitude I and width w does what a very long
-//! one of I_e = I/(1 + c/w) would, c being the chronaxie; the least I_e that does anything is the
-//! rheobase of the first fibres to be recruited, here the threshold. Between threshold and
-//! saturation recruitment rises as an S, as isometric recruitment curves do (Durfee & MacLean, IEEE
-//! Trans. Biomed. Eng. 36 (1989) 654-667): x = (I_e - threshold)/(saturation - threshold), U = t/(t
-//! + m (1 - t))/2 with t = 2x up to x = 1/2, and the same turned about that point beyond. That
-//! rational form is ours: it has the slope m in the middle and 1/m at both ends, is exactly 0 and 1
-//! where it should be, and has an inverse of the same form.
+//! Strength and duration (Lapicque 1907): a pulse of amplitude I and width w acts like a very long
+//! one of I_e = I/(1 + c/w) with the chronaxie c. The least effective I_e is the rheobase of the
+//! first recruited fibres, here the threshold. Between threshold and saturation recruitment is
+//! S-shaped like isometric recruitment curves (Durfee & MacLean, IEEE Trans. Biomed. Eng. 36 (1989)
+//! 654-667). With x = (I_e - threshold)/(saturation - threshold) and t = 2x,
+//!
+//! `U = t/(t + m (1 - t))/2` up to x = 1/2,
+//!
+//! and point-symmetric about (1/2, 1/2) beyond. This rational form is ours: its slope is m in the
+//! middle and 1/m at both ends, it is exactly 0 and 1 at the ends, and its inverse has the same
+//! form.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::{Admission, Range, admit_one};

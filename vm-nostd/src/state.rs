@@ -92,10 +92,11 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     }
 
     /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
-    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; what multiplied F_pe2 in the middle of the
-    /// last tick, mean and variance of the speed in it; what multiplied FV of each type in its middle; Y of
-    /// each type where it started; U_eff, where each type is one unit; and of each unit f_int, f_eff, S, the Af foreseen
-    /// for the next tick, and its effective length where it has one.
+    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; what multiplied F_pe2 in the
+    /// middle of the last tick, mean and variance of the speed in it; what multiplied FV of each
+    /// type in its middle; Y of each type where it started; U_eff, where each type is one unit; and
+    /// of each unit f_int, f_eff, S, the Af foreseen for the next tick, and its effective length
+    /// where it has one.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let of_muscle = [
             self.tendon_extension.to_bits(),

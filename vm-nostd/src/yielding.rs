@@ -32,8 +32,8 @@ impl YieldParams {
     }
 }
 
-/// The unit of a variance of speeds, (L_ce0/s)²: no square of a speed that fascicles can have is out of the
-/// range of fixed point.
+/// The unit of a variance of speeds, (L_ce0/s)²: no square of a speed that fascicles can have is
+/// out of the range of fixed point.
 pub(crate) const SPREAD: f64 = 64.0;
 
 /// Fascicle speed |V| during a tick.
@@ -91,9 +91,9 @@ impl<S: Scalar> Yielding<S> {
 
     /// Y at a tick's end, by the fascicle speed during that tick.
     ///
-    /// The mean of exp(-|V|/VY) over the tick is exp(-mean/VY) (1 + variance/(2 VY²)) to second order. A
-    /// velocity taken at the tick's boundary would be biased: inputs that step every tick make it ripple
-    /// in step with them.
+    /// The mean of exp(-|V|/VY) over the tick is exp(-mean/VY) (1 + variance/(2 VY²)) to second
+    /// order. A velocity taken at the tick's boundary would be biased: inputs that step every tick
+    /// make it ripple in step with them.
     #[inline(always)]
     pub(crate) fn advance(&self, yielding: S::LagState, speed: &Speed<S>) -> S::LagState {
         if self.depth == S::ZERO {

@@ -87,8 +87,8 @@ pub struct FiberType {
 pub struct Fiber {
     /// Fractional physiological cross-sectional area, 0..1; the shares of a muscle add to 1.
     pub fraction: f64,
-    /// Shares of the type's motor units in its cross section, in order of recruitment; they add to
-    /// 1. Only the discrete modes use them.
+    /// Shares of the type's motor units in its cross section, in order of recruitment; they sum
+    /// to 1. Only the discrete modes use them.
     pub units: Vec<f64>,
     /// Coefficients of the type.
     pub fiber_type: FiberType,

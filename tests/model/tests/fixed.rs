@@ -237,8 +237,8 @@ fn states_that_no_tick_leaves_are_refused() {
     let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
     // Word 0 is the fingerprint. Word 4 multiplied F_pe2, 5 and 6 are the speed, 7 and 8 the gains,
-    // 9 and 10 Y of the slow type, which yields and does not sag, 13 and 14 f_env of the first type,
-    // and 15 to 22 the rest of that type; lags have two, the higher one second.
+    // 9 and 10 Y of the slow type, which yields and does not sag, 13 and 14 f_env of the first
+    // type, and 15 to 22 the rest of that type; lags have two, the higher one second.
     for (word, value) in [
         (1, 0x8000_0000), // extension -128
         (1, whole(129)),  // extension -127

@@ -3,10 +3,11 @@
 //! Of a velocity that differs from the steady one, damping c leaves e^-z after a substep, z = h c/m
 //! with the mass m; and the steady velocity itself moves on as the forces grow. The midpoint rule
 //! alone (end = 2 middle - start) leaves (2 - z)/(2 + z) of the difference: with much damping all
-//! of it, reversed. With s = z/(2 + z), from 0 to 1 as damping grows, s³ (2 - s) of what was gained up to the
-//! middle is taken back, and s (1 - s)/2 of that added to the mean velocity. Pure decay would ask for up to
-//! 0.1 more. On a tendon, though, what is left of a velocity rings: a fit of pure decay, s² (2 + 5 s - 4 s²)/3,
-//! was measured to make 1.5 to 2 times the error after steps of stimulation frequency.
+//! of it, reversed. With s = z/(2 + z), from 0 to 1 as damping grows, s³ (2 - s) of what was gained
+//! up to the middle is taken back, and s (1 - s)/2 of that added to the mean velocity. Pure decay
+//! would ask for up to 0.1 more. On a tendon, though, what is left of a velocity rings: a fit of
+//! pure decay, s² (2 + 5 s - 4 s²)/3, was measured to make 1.5 to 2 times the error after steps of
+//! stimulation frequency.
 
 use crate::scalar::Scalar;
 
@@ -17,8 +18,8 @@ pub(super) struct Left<S> {
     pub(super) mean: S,
 }
 
-/// Of a mass over half the substep (`inertia`) and a `damping`, both F0 s/L_ce0: what is left of the
-/// velocity `gained` up to the middle, while the force is `growing` (F0 in half the substep).
+/// Of a mass over half the substep (`inertia`) and a `damping`, both F0 s/L_ce0: what is left of
+/// the velocity `gained` up to the middle, while the force is `growing` (F0 in half the substep).
 #[inline(always)]
 pub(super) fn left<S: Scalar>(inertia: S, damping: S, gained: S, growing: S) -> Left<S> {
     let reciprocal = (inertia + damping).reciprocal();

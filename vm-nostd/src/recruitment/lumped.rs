@@ -9,8 +9,8 @@ use crate::state::{RestoreError, Saved};
 /// Recruitment, and excitation of each type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LumpedState<S: Scalar, const N: usize> {
-    /// What the types share: U_eff, 0..1 (natural continuous); f_env of the first in the last tick, f0.5
-    /// (intramuscular FES).
+    /// What the types share: U_eff, 0..1 (natural continuous); f_env of the first in the last tick,
+    /// f0.5 (intramuscular FES).
     pub(crate) shared: S::LagState,
     pub(super) fibers: [FiberState<S>; N],
     /// Af of each type.
@@ -41,7 +41,8 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
         }
     }
 
-    /// The state whose words come next, with what the types share and f_int and f_eff of each in their ranges.
+    /// The state whose words come next, with what the types share and f_int and f_eff of each in
+    /// their ranges.
     pub(super) fn restored<I: Iterator<Item = S::Bits>>(
         fibers: &[Fiber<S>; N],
         saved: &mut Saved<I>,
