@@ -130,3 +130,6 @@ impl<'q> Controller<'q> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -300,6 +300,16 @@ fn a_drive_of_no_current_does_not_grow_old() {
     assert!((0..2_000).all(|_| bench.tick()));
 }
 
+/// Nor those of a row.
+#[test]
+fn a_row_of_no_current_does_not_grow_old() {
+    let limits = Limits { readings_ms: 5_000, ..Limits::SURFACE.within_scale(&SCALE) };
+    let mut bench = Bench::armed(limits);
+    let none = Stimulus { amplitude_ua: 0, ..STIMULUS };
+    bench.device.demand = Aged::new([Demand::Pulses(1, none), Demand::Nothing]);
+    assert!((0..2_000).all(|_| bench.tick()));
+}
+
 /// A stop ends current; muscles that only compute go on with their rows.
 #[test]
 fn a_stop_while_nothing_is_armed_drops_no_row() {

@@ -134,3 +134,39 @@ fn a_bit_that_memory_has_lost_of_a_limit_is_a_fault() {
     supervisor.tick(&observed(160_000), &Requested::NOTHING);
     assert_eq!(supervisor.arm(), Err(NotArmed::StillThere(Fault::Checksum)));
 }
+
+/// A path that is another one was read, whatever is said of it.
+#[test]
+fn a_path_that_has_changed_is_new() {
+    let mut supervisor = armed(Limits::SURFACE, 1000);
+    let unsaid = |path_um| Observed { path_is_new: false, ..observed(path_um) };
+    for tick in 1..=20 {
+        assert!(supervisor.tick(&unsaid(160_000 + 1_000 * tick), &Requested::NOTHING));
+    }
+    assert!(!supervisor.tick(&unsaid(180_000 + 1_001), &Requested::NOTHING));
+    assert_eq!(supervisor.state(), State::Latched(Fault::SensorJump));
+    // One that is not new is as old as the last that was.
+    let mut supervisor = armed(Limits::SURFACE, 1000);
+    for _ in 0..20 {
+        assert!(supervisor.tick(&unsaid(160_000), &Requested::NOTHING));
+    }
+    assert!(supervisor.tick(&observed(160_000 + 21_000), &Requested::NOTHING));
+    assert!(!supervisor.tick(&observed(160_000 + 22_001), &Requested::NOTHING));
+}
+
+/// A sensor that moves in a pause of stimulation is not stuck.
+#[test]
+fn a_movement_in_a_pause_is_a_movement() {
+    let limits = Limits { stuck_ms: 1_000, ..Limits::SURFACE };
+    let mut supervisor = armed(limits, 1000);
+    for _ in 0..3 {
+        for _ in 0..900 {
+            assert!(supervisor.tick(&observed(160_000), &REQUESTED));
+        }
+        // The train is over after 25 ms, and then it moves.
+        for tick in 0..40 {
+            let path_um = 160_000 + i32::from(tick == 35);
+            assert!(supervisor.tick(&observed(path_um), &Requested::NOTHING));
+        }
+    }
+}

@@ -62,6 +62,31 @@ fn current_is_off_two_ticks_after_the_last_tick() {
     }
 }
 
+/// A tick that comes when the next step would outlast the last permission to the µs is not late; a µs after that it is.
+#[test]
+fn a_permission_holds_to_the_microsecond() {
+    for tick_us in TICKS_US {
+        let after = |apart_us: u32| {
+            let mut bench =
+                armed(tick_us, Stimulus { frequency_tenths_pps: 10, ..stimulus(5_000) });
+            // Between two pulses, where all steps are as long.
+            bench.flows(20);
+            // With a step, and so seen by it.
+            let last_us = bench.timer;
+            bench.control();
+            while bench.timer < last_us + apart_us {
+                bench.run_out();
+            }
+            bench.control();
+            bench.flows(2);
+            bench.controller.state()
+        };
+        let most_us = 2 * tick_us - Step::LONGEST_US;
+        assert_eq!(after(most_us), State::Armed, "{most_us} us after a tick of {tick_us} us");
+        assert_eq!(after(most_us + 1), State::Latched(Fault::Deadline), "ticks of {tick_us} us");
+    }
+}
+
 /// Ticks whose permission comes now sooner and now later, by half a tick: none is missed for that.
 #[test]
 fn ticks_that_come_unevenly_are_no_fault() {
