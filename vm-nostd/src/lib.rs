@@ -13,7 +13,7 @@
 //!
 //! ```
 //! use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
-//! use vm_nostd::{FesMuscle, FiberParams, Input, MuscleParams, TimeStep};
+//! use vm_nostd::{Class, FesMuscle, FiberParams, Input, MuscleParams, TimeStep};
 //!
 //! let params = MuscleParams {
 //!     mass: 97.5e-3,          // kg
@@ -21,6 +21,7 @@
 //!     tendon_length: 0.02,    // m
 //!     max_path_length: 0.184, // m
 //!     recruitment_saturation: 0.8,
+//!     class: Class::Standard,
 //!     elements: ELEMENTS,
 //!     fibers: [
 //!         FiberParams { fraction: 0.6, fiber_type: SLOW },
@@ -57,6 +58,8 @@
 //! | `f32` | cores with an FPU | m | N | pps |
 //! | [`Fixed`] | cores without one (Q8.24); see [`Input::from_integers`] | µm | mN | pps |
 //! | `f64` | tests | m | N | pps |
+//!
+//! Accuracy is a choice, too: [`Class`] selects the substeps of the mechanics.
 //!
 //! # Units
 //!
