@@ -81,7 +81,29 @@ pub trait Running {
     fn watch(&self, watch: &mut dyn FnMut(u64));
 }
 
-/// A muscle at rest on a path (m), stepped by `time_step` (s).
+/// An accuracy class of `vm-nostd`, which the reference does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Class {
+    /// One substep per tick, unless the muscle rings too fast for it.
+    Economy,
+    /// Substeps of at most 0.25 ms.
+    #[default]
+    Standard,
+    /// Substeps of at most 0.1 ms.
+    Fine,
+}
+
+impl Class {
+    fn of_model(self) -> vm::Class {
+        match self {
+            Self::Economy => vm::Class::Economy,
+            Self::Standard => vm::Class::Standard,
+            Self::Fine => vm::Class::Fine,
+        }
+    }
+}
+
+/// A muscle of the standard class at rest on a path (m), stepped by `time_step` (s).
 pub fn at_rest(
     muscle: &Muscle,
     mode: Mode,
@@ -89,24 +111,31 @@ pub fn at_rest(
     time_step: f64,
     path_length: f64,
 ) -> Result<Box<dyn Running>, RunError> {
-    let rest = Rest { muscle, time_step, path_length };
-    match arithmetic {
-        Arithmetic::Reference => rest.reference(mode),
-        Arithmetic::F32 => rest.of_scalar::<f32>(mode),
-        Arithmetic::Fixed => rest.of_scalar::<vm::Fixed>(mode),
-        Arithmetic::F64 => rest.of_scalar::<f64>(mode),
-    }
+    Rest { muscle, class: Class::Standard, time_step, path_length }.running(mode, arithmetic)
 }
 
-/// Runs a muscle over a trace: one row per input; the first is the muscle at rest.
+/// Runs a muscle of the standard class over a trace: one row per input; the first is the muscle at
+/// rest.
 pub fn run(
     muscle: &Muscle,
     mode: Mode,
     arithmetic: Arithmetic,
     trace: &InputTrace,
 ) -> Result<Vec<Row>, RunError> {
-    let path = trace.inputs[0].path_length;
-    let mut running = at_rest(muscle, mode, arithmetic, trace.time_step, path)?;
+    run_in_class(muscle, mode, arithmetic, Class::Standard, trace)
+}
+
+/// Runs a muscle of any class over a trace: one row per input; the first is the muscle at rest.
+pub fn run_in_class(
+    muscle: &Muscle,
+    mode: Mode,
+    arithmetic: Arithmetic,
+    class: Class,
+    trace: &InputTrace,
+) -> Result<Vec<Row>, RunError> {
+    let (time_step, path_length) = (trace.time_step, trace.inputs[0].path_length);
+    let rest = Rest { muscle, class, time_step, path_length };
+    let mut running = rest.running(mode, arithmetic)?;
     let mut rows = vec![running.row()];
     for &input in &trace.inputs[1..] {
         rows.push(running.step(input)?);
@@ -138,11 +167,21 @@ pub fn fingerprint(
 /// Start of a run.
 struct Rest<'a> {
     muscle: &'a Muscle,
+    class: Class,
     time_step: f64,
     path_length: f64,
 }
 
 impl Rest<'_> {
+    fn running(&self, mode: Mode, arithmetic: Arithmetic) -> Result<Box<dyn Running>, RunError> {
+        match arithmetic {
+            Arithmetic::Reference => self.reference(mode),
+            Arithmetic::F32 => self.of_scalar::<f32>(mode),
+            Arithmetic::Fixed => self.of_scalar::<vm::Fixed>(mode),
+            Arithmetic::F64 => self.of_scalar::<f64>(mode),
+        }
+    }
+
     fn reference(&self, mode: Mode) -> Result<Box<dyn Running>, RunError> {
         if matches!(mode, Mode::Discrete | Mode::DiscreteEffectiveLength) {
             count_units(self.muscle)?;
@@ -191,7 +230,8 @@ impl Rest<'_> {
         units: &R::Units,
     ) -> Result<Box<dyn Running>, RunError> {
         let step = vm::TimeStep::from_seconds(self.time_step)?;
-        let params = link::params(self.muscle);
+        let class = self.class.of_model();
+        let params = vm::MuscleParams { class, ..link::params(self.muscle) };
         let muscle = vm::Muscle::<S, R, N>::build_with_units(&params, units, step)?;
         let state = muscle.rest(S::path_length(self.path_length))?;
         let fatigue = self.muscle.fatigue.as_ref().map(link::fatigue_params);

@@ -2,7 +2,7 @@
 
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::cycles;
-use crate::engine::{Arithmetic, RunError};
+use crate::engine::{Arithmetic, Class, RunError};
 use crate::figures::{Claim, Figures, FiguresError};
 use crate::golden::{self, Golden, GoldenError};
 use crate::provenance::Provenance;
@@ -142,7 +142,7 @@ fn worst<'a>(rows: &'a [Row], arithmetic: &str, ringing: bool) -> Option<&'a Row
 /// Largest error in an arithmetic, against the promise for such scenarios.
 fn error_fact(row: &Row, what: &str, f0: f64) -> Fact {
     let key = [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone);
-    let (promised, _) = tolerance::promise(&key, f0);
+    let (promised, _) = tolerance::promise(&key, Class::Standard, f0);
     Fact {
         value: format!("{:.3} %", row.max_pct_f0),
         what: format!(

@@ -9,7 +9,7 @@ pub use case::{Case, Measured};
 pub use ledger::{Ledger, LedgerError};
 pub use space::{KEYS, Key, Space, SpaceError, Variation};
 
-use crate::engine::{self, Arithmetic};
+use crate::engine::{self, Arithmetic, Class};
 use crate::golden;
 use crate::progress;
 use rayon::prelude::*;
@@ -23,6 +23,8 @@ pub struct Sweep {
     pub space: Space,
     /// What each is computed in, besides the reference.
     pub arithmetics: Vec<Arithmetic>,
+    /// Accuracy class.
+    pub class: Class,
     /// The arguments of `vm sweep` that name all this.
     pub arguments: String,
 }
@@ -104,7 +106,7 @@ impl Sweep {
         let case = self.space.case(number);
         let mut row = Self::begin(number, &case);
         let measured = case
-            .errors(&self.arithmetics)
+            .errors(&self.arithmetics, self.class)
             .unwrap_or_else(|refusal| vec![Err(refusal); self.arithmetics.len()]);
         let mut problems = Vec::new();
         for measured in measured {

@@ -1,5 +1,6 @@
 //! Every comparison of `vm verify` passes, and each check fails when it should.
 
+use host_sim::engine::Class;
 use host_sim::metrics::ForceError;
 use host_sim::tolerance;
 use host_sim::{golden, readme, verify};
@@ -26,7 +27,7 @@ fn every_row_is_within_its_tolerance_and_the_documents_say_so() {
 fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
     let f0 = host_sim::scenario::paper_muscle().f0();
     for (key, entry) in tolerance::table() {
-        let (promised, promised_rms) = tolerance::promise(&key, f0);
+        let (promised, promised_rms) = tolerance::promise(&key, Class::Standard, f0);
         assert!(entry.max <= promised, "{key:?}: {} > {promised}", entry.max);
         if let Some(promised) = promised_rms {
             let rms = entry.rms.expect("an rms tolerance where one is promised");
@@ -40,7 +41,7 @@ fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
 fn the_promises_are_those_of_the_project() {
     let promise = |scenario: &str, arithmetic: &str| {
         let key = [scenario, "continuous", arithmetic, "reference"].map(str::to_owned);
-        tolerance::promise(&key, 265.909)
+        tolerance::promise(&key, Class::Standard, 265.909)
     };
     assert_eq!(promise("continuous_steps", "f32"), (0.1, None));
     assert_eq!(promise("activation_10hz@0.5ms", "f32"), (0.05, None));

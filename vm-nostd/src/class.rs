@@ -35,7 +35,7 @@ impl Class {
         match self {
             Self::Economy => Substeps { longest: (f64::MAX, f64::MAX), ringing: f64::MAX },
             Self::Standard => Substeps { longest: (0.25e-3, 0.15e-3), ringing: 0.35 },
-            Self::Fine => Substeps { longest: (0.1e-3, 0.06e-3), ringing: 0.15 },
+            Self::Fine => Substeps { longest: (0.1e-3, 0.1e-3), ringing: 0.15 },
         }
     }
 }

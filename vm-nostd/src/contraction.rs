@@ -361,7 +361,7 @@ mod tests {
         };
         let counts = [0.1, 0.5, 1.0, 2.0]
             .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
-        assert_eq!(counts, [[1, 1, 2], [1, 4, 9], [1, 4, 10], [2, 8, 20]]);
+        assert_eq!(counts, [[1, 1, 1], [1, 4, 5], [1, 4, 10], [2, 8, 20]]);
         // A tendon that is so short that the muscle would ring by more than half a period in a
         // tick.
         let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });

@@ -1,7 +1,7 @@
 //! `vm run`: a muscle over a file of inputs.
 
 use super::ModeName;
-use crate::engine::{self, Arithmetic};
+use crate::engine::{self, Arithmetic, Class};
 use crate::link;
 use crate::muscles::find;
 use crate::reference::Muscle;
@@ -30,6 +30,9 @@ pub struct RunArgs {
     /// Arithmetic.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
     arithmetic: Arithmetic,
+    /// Accuracy class.
+    #[arg(long, value_enum, default_value_t)]
+    class: Class,
 }
 
 /// Runs the muscle, writes its outputs, and prints a summary on standard error.
@@ -37,7 +40,8 @@ pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
     let muscle = find(&args.muscle)?.muscle;
     let trace = trace::read_inputs(&args.input)?;
     check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
-    let computed = engine::run(&muscle, args.mode.into(), args.arithmetic, &trace)?;
+    let computed =
+        engine::run_in_class(&muscle, args.mode.into(), args.arithmetic, args.class, &trace)?;
     let rows: Vec<OutputRow> = computed
         .iter()
         .enumerate()

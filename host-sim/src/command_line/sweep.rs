@@ -1,7 +1,7 @@
 //! `vm sweep`.
 
 use super::{ModeName, print};
-use crate::engine::{Arithmetic, mode_name, status_names};
+use crate::engine::{Arithmetic, Class, mode_name, status_names};
 use crate::sweep::{KEYS, Space, Sweep, Variation};
 use crate::trace::write_atomically;
 use clap::{Args, ValueEnum};
@@ -31,6 +31,9 @@ pub struct SweepArgs {
     /// Arithmetics to compare with the reference.
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["f32", "fixed"])]
     arithmetics: Vec<Arithmetic>,
+    /// Accuracy class.
+    #[arg(long, value_enum, default_value_t)]
+    class: Class,
     /// Worst cases to list per arithmetic, with and without flags.
     #[arg(long, default_value_t = 5)]
     worst: usize,
@@ -77,6 +80,7 @@ impl SweepArgs {
         Ok(Sweep {
             space: Space::new(&variations, modes, random)?,
             arithmetics: self.arithmetics.clone(),
+            class: self.class,
             arguments: self.arguments(&variations),
         })
     }
@@ -90,6 +94,9 @@ impl SweepArgs {
         arguments.extend(variations.iter().map(|variation| format!("--vary {variation}")));
         arguments.push(format!("--modes {}", names(&self.modes)));
         arguments.push(format!("--arithmetics {}", names(&self.arithmetics)));
+        if self.class != Class::Standard {
+            arguments.push(format!("--class {}", names(&[self.class])));
+        }
         arguments.join(" ")
     }
 }
@@ -139,7 +146,7 @@ fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Err
     write_atomically(&muscle, case.muscle_file().as_bytes())?;
     write_atomically(&input, case.input_file().as_bytes())?;
     let mode = mode_name(case.mode);
-    match case.errors(&sweep.arithmetics) {
+    match case.errors(&sweep.arithmetics, sweep.class) {
         Ok(errors) => {
             for (arithmetic, measured) in sweep.arithmetics.iter().zip(errors) {
                 let name = arithmetic.name();

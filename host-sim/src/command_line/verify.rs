@@ -1,6 +1,7 @@
 //! `vm verify`, the main job: every arithmetic against the reference, in six lines or row by row.
 
 use super::{complain, print};
+use crate::engine::Class;
 use crate::verify::{self, Report, Row};
 use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
@@ -14,11 +15,14 @@ pub struct VerifyArgs {
     /// Print every comparison, not only the worst of each mode and arithmetic.
     #[arg(long)]
     all: bool,
+    /// Accuracy class.
+    #[arg(long, value_enum, default_value_t)]
+    class: Class,
 }
 
 /// Compares and prints the results; false if a comparison failed.
 pub fn run(args: &VerifyArgs) -> Result<bool, Box<dyn Error>> {
-    let report = verify::verify()?;
+    let report = verify::verify_class(args.class)?;
     if args.json {
         print(&serde_json::to_string_pretty(&report.rows)?)?;
     } else {

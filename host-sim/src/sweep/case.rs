@@ -1,7 +1,7 @@
 //! A case: muscle, inputs, and the error of every arithmetic.
 
 use super::space::KEYS;
-use crate::engine::{self, Arithmetic};
+use crate::engine::{self, Arithmetic, Class};
 use crate::link;
 use crate::metrics::{ForceError, forces};
 use crate::muscle_file;
@@ -103,10 +103,14 @@ impl Case {
     }
 
     /// Error and flags of every arithmetic against the reference, or the reason why there is none.
-    pub fn errors(&self, arithmetics: &[Arithmetic]) -> Result<Vec<Measured>, String> {
+    pub fn errors(
+        &self,
+        arithmetics: &[Arithmetic],
+        class: Class,
+    ) -> Result<Vec<Measured>, String> {
         let (muscle, trace) = (self.muscle()?, self.trace());
         let run = |arithmetic| {
-            engine::run(&muscle, self.mode, arithmetic, &trace)
+            engine::run_in_class(&muscle, self.mode, arithmetic, class, &trace)
                 .map_err(|error| format!("{}: {error}", arithmetic.name()))
         };
         let computed: Vec<_> = arithmetics.iter().map(|&arithmetic| run(arithmetic)).collect();
