@@ -5,7 +5,7 @@
 //! alone (end = 2 middle - start) leaves (2 - z)/(2 + z) of the difference: with much damping all
 //! of it, reversed. With s = z/(2 + z), from 0 to 1 as damping grows, s³ (2 - s) of what was gained
 //! up to the middle is taken back, and s (1 - s)/2 of that added to the mean velocity. Pure decay
-//! would ask for up to 0.1 more. On a tendon, though, what is left of a velocity rings: a fit of
+//! would ask for up to 0.14 more. On a tendon, though, what is left of a velocity rings: a fit of
 //! pure decay, s² (2 + 5 s - 4 s²)/3, was measured to make 1.5 to 2 times the error after steps of
 //! stimulation frequency.
 
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_damping_leaves_is_what_decays_exponentially_within_11_percent() {
+    fn what_damping_leaves_is_what_decays_exponentially_within_15_percent() {
         for step in 0..=4000 {
             // Half of z: damping over inertia.
             let y = 1e-4 * 1.005_f64.powi(step);
@@ -43,7 +43,7 @@ mod tests {
             let gained = 1.0 / (1.0 + y) - 1.0;
             let end = left(1.0, y, gained, 0.0).end / gained;
             let exact = (1.0 - (-2.0 * y).exp() * (1.0 + y)) / y;
-            assert!((end - exact).abs() < 0.11, "z {}: {end} {exact}", 2.0 * y);
+            assert!((end - exact).abs() < 0.15, "z {}: {end} {exact}", 2.0 * y);
             let mean = 1.0 / (1.0 + y) + left(1.0, y, gained, 0.0).mean;
             let exact = -(-2.0 * y).exp_m1() / (2.0 * y);
             assert!((mean - exact).abs() < 0.07, "z {}: mean {mean} {exact}", 2.0 * y);
