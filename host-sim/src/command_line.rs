@@ -7,6 +7,7 @@ mod hil;
 mod measured;
 mod muscles;
 mod plot;
+mod recover;
 mod run;
 mod stack;
 mod sweep;
@@ -65,6 +66,10 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Fit muscle parameters to recordings, with standard errors and correlations.
     Fit(fit::FitArgs),
+    /// Write a recording protocol that determines a muscle's parameters, for `vm fit`.
+    Protocol(recover::ProtocolArgs),
+    /// Fit synthetic patients with known parameters, and compare.
+    Recover(recover::RecoverArgs),
     /// Compare the model with published recordings of real muscle.
     Measured(measured::MeasuredArgs),
     /// List the human muscles that `--muscle` takes by name, with their assumptions.
@@ -159,6 +164,8 @@ pub fn main() -> ExitCode {
         Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),
         Command::Fit(args) => fit::run(&args).map(|()| true),
+        Command::Protocol(args) => recover::protocol(&args).map(|()| true),
+        Command::Recover(args) => recover::recover(&args),
         Command::Measured(args) => measured::run(&args),
         Command::Muscles => muscles::run().map(|()| true),
         Command::Readme(args) => compare_readme(&args),

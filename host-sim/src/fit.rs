@@ -5,7 +5,6 @@
 //! MINPACK) from several starts. The shape of the file that lists recordings and free parameters is
 //! in `docs/trials.md`.
 
-mod curve;
 mod keys;
 mod outcome;
 mod page;
@@ -20,9 +19,11 @@ mod statistics;
 mod trials;
 mod write;
 
+pub use keys::Key;
 pub use outcome::{Confirmed, Fit, TrialFit, fit};
 pub use page::{PageError, page};
-pub use parameters::{Parameter, Place, Prior};
+pub use parameters::{Parameter, Place, Prior, applied};
+pub use priors::{Basis, Spread, spread};
 pub use solve::Search;
 pub use start::Start;
 pub use statistics::{Estimate, Pair};

@@ -57,6 +57,13 @@ pub fn compute() -> Result<BTreeMap<String, String>, RunError> {
         .collect()
 }
 
+/// The model's version and a checksum of its golden bits: identifies the model that made a table.
+pub fn model() -> String {
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let bits = crc.checksum(COMMITTED.as_bytes());
+    format!("vm {} with golden bits {bits:08x}", env!("CARGO_PKG_VERSION"))
+}
+
 /// The committed checksums.
 pub fn committed() -> Result<Golden, GoldenError> {
     Ok(toml::from_str(COMMITTED)?)

@@ -220,7 +220,7 @@ const KEYS: &[(&str, &str, f64)] = &[
 ];
 
 /// A number in the file's unit, without the rounding noise of the conversion.
-fn in_file_unit(value: f64, scale: f64) -> f64 {
+pub(crate) fn in_file_unit(value: f64, scale: f64) -> f64 {
     format!("{:.9e}", value * scale).parse().unwrap_or(value * scale)
 }
 

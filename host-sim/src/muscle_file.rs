@@ -1,5 +1,6 @@
 //! Muscle files (TOML): parsed, completed from the published sets, and validated.
 
+pub mod curve;
 mod line;
 mod size;
 
@@ -7,11 +8,13 @@ use crate::coefficients::{self, Row, RowError};
 use crate::engine::MOST_UNITS;
 use crate::link;
 use crate::reference::{Fatigue, Fiber, Muscle, UnitSizes};
+use curve::CurveTable;
 use line::line_of;
 use serde::Deserialize;
 use size::{ANY_MASS, Size};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use vm_nostd::RecruitmentCurveParams;
 
 /// Why a muscle file was refused.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +73,7 @@ struct MuscleFile {
     #[serde(default)]
     fiber: Vec<FiberTable>,
     fatigue: Option<FatigueTable>,
+    recruitment_curve: Option<CurveTable>,
 }
 
 /// Fatigue; without this table there is none.
@@ -132,6 +136,8 @@ pub struct NamedMuscle {
     pub name: String,
     /// The muscle, its fibre types in order of rank.
     pub muscle: Muscle,
+    /// How it answers to the pulses of its electrode, if the file says.
+    pub curve: Option<RecruitmentCurveParams>,
 }
 
 /// Reads and validates a muscle file.
@@ -214,7 +220,11 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     }
     muscle.mass = size.mass(&muscle);
     validate(&muscle).map_err(|refusal| refused(size.refusal(refusal)))?;
-    Ok(NamedMuscle { name: file.name, muscle })
+    let curve = file.recruitment_curve.map(CurveTable::params);
+    if let Some(refusal) = curve.as_ref().and_then(curve::refusal) {
+        return Err(refused(refusal));
+    }
+    Ok(NamedMuscle { name: file.name, muscle, curve })
 }
 
 /// A key, its value and the limit it broke.

@@ -2,19 +2,15 @@
 //! that can be gone on with after an interruption.
 
 mod case;
-mod ledger;
 mod space;
 
 pub use case::{Case, Measured};
-pub use ledger::{Ledger, LedgerError};
 pub use space::{KEYS, Key, Space, SpaceError, Variation};
 
 use crate::engine::{self, Arithmetic, Class};
 use crate::golden;
-use crate::progress;
-use rayon::prelude::*;
+use crate::ledger::{Ledger, LedgerError};
 use std::path::Path;
-use std::sync::mpsc;
 
 /// What is swept, and in what it is computed.
 #[derive(Clone, Debug)]
@@ -42,14 +38,6 @@ pub struct Worst {
     pub status: String,
 }
 
-/// Which model made a table: its version, and a checksum of its golden bits, so that no table is
-/// gone on with by another one.
-fn model() -> String {
-    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    let bits = crc.checksum(golden::COMMITTED.as_bytes());
-    format!("vm {} with golden bits {bits:08x}", env!("CARGO_PKG_VERSION"))
-}
-
 /// Columns of an arithmetic.
 const MEASURED: [&str; 4] = ["max_pct_f0", "rms_pct_f0", "bias_pct_f0", "status"];
 
@@ -63,7 +51,7 @@ impl Sweep {
             columns.extend(MEASURED.map(|column| format!("{name}_{column}")));
         }
         columns.push("problem".to_owned());
-        [format!("# vm sweep {} # {}", self.arguments, model()), columns.join(",")]
+        [format!("# vm sweep {} # {}", self.arguments, golden::model()), columns.join(",")]
     }
 
     /// What a case's row begins with.
@@ -78,26 +66,7 @@ impl Sweep {
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |number| Self::begin(number, &self.space.case(number));
         let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
-        let missing = ledger.missing();
-        let progress = progress::bar("computing cases", self.space.count());
-        progress.set_position((self.space.count() - missing.len()) as u64);
-        let (sender, receiver) = mpsc::channel::<Vec<String>>();
-        std::thread::scope(|scope| {
-            let writer = scope.spawn(|| {
-                for row in receiver {
-                    ledger.append(&row)?;
-                    progress.inc(1);
-                }
-                Ok::<(), LedgerError>(())
-            });
-            // Where the writer has stopped there is nobody to compute for, and it says why.
-            let _stopped = missing
-                .into_par_iter()
-                .try_for_each_with(sender, |sender, case| sender.send(self.row(case)));
-            writer.join().expect("the writer does not panic")
-        })?;
-        progress.finish_and_clear();
-        ledger.finish()?;
+        ledger.complete(|case| self.row(case))?;
         Ok(ledger)
     }
 

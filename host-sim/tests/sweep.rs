@@ -190,11 +190,11 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
     // Of another model.
     let other = text.replacen("golden bits ", "golden bits 0", 1);
     fs::write(&output, other).expect("a file");
-    refused(&grid, &output, &["another sweep's table"]);
+    refused(&grid, &output, &["another run's table"]);
     fs::write(&output, &text).expect("a file");
     let other = File::open(&output).expect("a file");
     other.lock().expect("a lock");
-    refused(&grid, &output, &["another sweep is writing it"]);
+    refused(&grid, &output, &["another run is writing it"]);
 }
 
 #[test]

@@ -34,10 +34,10 @@ pub struct FitArgs {
 pub struct SearchArgs {
     /// Number of starts: the first at the muscle's values, the others random.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    starts: u16,
+    pub starts: u16,
     /// Random seed of the starts; the same seed gives the same bytes.
     #[arg(long, default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
 }
 
 impl SearchArgs {

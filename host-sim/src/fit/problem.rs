@@ -1,10 +1,10 @@
 //! The model held against the recordings: forces, residuals and their derivatives.
 
 use super::FitError;
-use super::curve;
 use super::parameters::{Parameter, Place, applied};
 use super::trials::{Drive, Role, Trial, Trials};
 use crate::engine::{self, Arithmetic, RunError};
+use crate::muscle_file::curve;
 use crate::reference::{Input, Muscle};
 use crate::trace::InputTrace;
 use nalgebra::DMatrix;

@@ -1,13 +1,13 @@
 //! The list of recordings and free parameters, `TRIALS.toml`; its shape is in `docs/trials.md`.
 
 use super::FitError;
-use super::curve::{self, CURVE, CurveTable};
 use super::keys::{self, Key};
 use super::parameters::{Parameter, Place, Prior, admitted};
 use super::priors;
 use super::signal::{Signal, SignalTable};
 use crate::engine::mode_name;
 use crate::muscle_file::NamedMuscle;
+use crate::muscle_file::curve::{self, CURVE, CurveTable};
 use crate::reference::{Mode, Muscle};
 use serde::Deserialize;
 use std::path::Path;
@@ -172,9 +172,10 @@ impl Trials {
         if !(noise > 0.0 && noise.is_finite()) {
             return Err(refuse(format!("noise = {noise} N: must be more than 0")));
         }
-        let curve = file.recruitment_curve.map(CurveTable::params);
-        if let Some(curve) = &curve {
-            curve.validate().map_err(|error| refuse(format!("recruitment_curve.{error}")))?;
+        // The list's own, which may be another electrode's than that of the muscle file.
+        let curve = file.recruitment_curve.map(CurveTable::params).or(start.curve);
+        if let Some((key, value, limit)) = curve.as_ref().and_then(curve::refusal) {
+            return Err(refuse(format!("{key} = {value}: {limit}")));
         }
         let parameters = file
             .free

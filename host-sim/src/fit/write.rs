@@ -1,10 +1,10 @@
 //! The fitted muscle as a file that every command takes: the start's, with the fitted numbers in
 //! their places.
 
-use super::curve;
 use super::keys::{EXCITATION_TIMES, FORCE, Key};
 use super::outcome::Fit;
 use super::trials::Role;
+use crate::muscle_file::curve;
 use crate::reference::Muscle;
 use std::fmt::Write;
 use toml::{Table, Value};
@@ -15,6 +15,12 @@ pub fn fitted_file(start: &Table, fit: &Fit, origin: &str) -> String {
     let mut table = start.clone();
     for estimate in &fit.estimates {
         put(&mut table, &estimate.name, estimate.value, &fit.muscle);
+    }
+    // All of it, fitted or not: what was fitted goes with the rest.
+    if let Some(values) = fit.curve {
+        let numbers = curve::NAMES.iter().zip(values);
+        let curve = numbers.map(|(name, value)| ((*name).to_owned(), Value::Float(value)));
+        table.insert("recruitment_curve".to_owned(), Value::Table(curve.collect()));
     }
     let body = toml::to_string(&table).expect("tables of numbers and texts");
     comments(fit, origin).expect("a string grows") + &body
@@ -37,9 +43,6 @@ fn comments(fit: &Fit, origin: &str) -> Result<String, std::fmt::Error> {
     for pair in &fit.pairs {
         let [one, other] = &pair.names;
         writeln!(text, "# {one} and {other} trade off: correlation {:.3}", pair.correlation)?;
-    }
-    if let Some(values) = fit.curve {
-        writeln!(text, "# recruitment curve: {} = {values:?}", curve::names())?;
     }
     for trial in &fit.trials {
         writeln!(

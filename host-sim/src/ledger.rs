@@ -1,10 +1,13 @@
 //! A table that grows row by row and can be gone on with: what was written whole counts, once.
 
+use crate::progress;
 use crate::trace::{TraceError, cell_error, write_atomically};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc;
 
 /// Why a table cannot be gone on with.
 #[derive(Debug, thiserror::Error)]
@@ -18,24 +21,24 @@ pub enum LedgerError {
         source: std::io::Error,
     },
     /// Somebody else is writing it.
-    #[error("{}: another sweep is writing it", .0.display())]
+    #[error("{}: another run is writing it", .0.display())]
     Busy(PathBuf),
     /// It is the table of something else.
-    #[error("{}: begins with \"{found}\", and not with \"{expected}\": another sweep's table, or none", path.display())]
+    #[error("{}: begins with \"{found}\", and not with \"{expected}\": another run's table, or none", path.display())]
     Other {
         /// The file.
         path: PathBuf,
         /// Its line.
         found: String,
-        /// What the line of this sweep's table is.
+        /// What the line of this run's table is.
         expected: String,
     },
-    /// A row that this sweep did not write.
+    /// A row that this run did not write.
     #[error(transparent)]
     Row(#[from] TraceError),
 }
 
-/// The table of a sweep.
+/// The table of a run of many cases.
 #[derive(Debug)]
 pub struct Ledger {
     path: PathBuf,
@@ -106,7 +109,7 @@ impl Ledger {
     }
 
     /// The cases that have no row.
-    pub fn missing(&self) -> Vec<usize> {
+    fn missing(&self) -> Vec<usize> {
         (0..self.count).filter(|case| !self.rows.contains_key(case)).collect()
     }
 
@@ -116,7 +119,7 @@ impl Ledger {
     }
 
     /// Adds a row, whose first cell is its case.
-    pub fn append(&mut self, row: &[String]) -> Result<(), LedgerError> {
+    fn append(&mut self, row: &[String]) -> Result<(), LedgerError> {
         let failed = |source| LedgerError::File { path: self.path.clone(), source };
         let line = line(row).map_err(failed)?;
         // In one piece, so that an interruption leaves it whole or torn, but never mixed.
@@ -127,8 +130,36 @@ impl Ledger {
         Ok(())
     }
 
+    /// Computes the rows that are missing, on all cores, and puts the table in order: it has the same bytes however
+    /// often it was interrupted.
+    pub fn complete(
+        &mut self,
+        row: impl Fn(usize) -> Vec<String> + Sync,
+    ) -> Result<(), LedgerError> {
+        let missing = self.missing();
+        let progress = progress::bar("computing cases", self.count);
+        progress.set_position((self.count - missing.len()) as u64);
+        let (sender, receiver) = mpsc::channel::<Vec<String>>();
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(|| {
+                for row in receiver {
+                    self.append(&row)?;
+                    progress.inc(1);
+                }
+                Ok::<(), LedgerError>(())
+            });
+            // Where the writer has stopped there is nobody to compute for, and it says why.
+            let _stopped = missing
+                .into_par_iter()
+                .try_for_each_with(sender, |sender, case| sender.send(row(case)));
+            writer.join().expect("the writer does not panic")
+        })?;
+        progress.finish_and_clear();
+        self.finish()
+    }
+
     /// Puts the rows in the order of their cases.
-    pub fn finish(&mut self) -> Result<(), LedgerError> {
+    fn finish(&mut self) -> Result<(), LedgerError> {
         let failed = |source| LedgerError::File { path: self.path.clone(), source };
         let mut bytes = format!("{}\n{}\n", self.head[0], self.head[1]).into_bytes();
         for row in self.rows.values() {

@@ -1,0 +1,182 @@
+//! A synthetic patient: a muscle drawn from the spreads, and what it does in a recording.
+
+use super::bout::{Bout, Setting};
+use super::list::{Free, OFFSET};
+use crate::engine::{self, Arithmetic, RunError};
+use crate::fit::{Parameter, Place, applied};
+use crate::link;
+use crate::muscle_file::NamedMuscle;
+use crate::muscle_file::curve::{self, CURVE};
+use crate::reference::{Mode, Muscle};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::f64::consts::TAU;
+use vm_nostd::RecruitmentCurveParams;
+
+/// No patient is further than so many spreads from the mean in any parameter.
+const FARTHEST: f64 = 2.5;
+/// Fascicles of a patient at rest are between these lengths wherever the protocol holds them, L_ce0: a joint does not
+/// take its muscle further.
+const LENGTHS: (f64, f64) = (0.6, 1.35);
+/// So many draws that no such muscle can be had from: the spreads are not those of muscles.
+const DRAWS: usize = 1000;
+/// Noise of a reading, share of F0.
+const NOISE: f64 = 0.01;
+/// One reading per so many ticks.
+pub const STRIDE: usize = 10;
+
+/// Why there is no patient, or no recording of one.
+#[derive(Debug, thiserror::Error)]
+pub enum PatientError {
+    /// None could be drawn.
+    #[error("none of {DRAWS} muscles drawn can be built and moved as the protocol does")]
+    None,
+    /// A run failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// No such recruitment curve.
+    #[error(transparent)]
+    Curve(#[from] vm_nostd::ParameterError),
+}
+
+/// A muscle whose parameters are known.
+#[derive(Clone, Debug)]
+pub struct Patient {
+    /// Their values, in the order of what is free.
+    pub truths: Vec<f64>,
+    /// The muscle.
+    pub muscle: Muscle,
+    curve: Option<RecruitmentCurveParams>,
+    offset: f64,
+    noise: ChaCha8Rng,
+}
+
+impl Patient {
+    /// The patient of a number: the same whenever and in whatever order it is asked for.
+    pub fn draw(
+        named: &NamedMuscle,
+        mode: Mode,
+        free: &[Free],
+        bouts: &[Bout],
+        (seed, number): (u64, usize),
+    ) -> Result<Self, PatientError> {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(number as u64);
+        let setting = Setting::of(named, mode);
+        for _ in 0..DRAWS {
+            let truths: Vec<f64> = free.iter().map(|free| drawn(free, &mut generator)).collect();
+            let (muscle, curve, offset) = with(named, free, &truths);
+            let noise = generator.clone();
+            let patient = Self { truths, muscle, curve, offset, noise };
+            if patient.can_be(&setting, bouts) {
+                return Ok(patient);
+            }
+        }
+        Err(PatientError::None)
+    }
+
+    fn can_be(&self, setting: &Setting, bouts: &[Bout]) -> bool {
+        let rests = |path: f64| {
+            engine::at_rest(&self.muscle, Mode::Fes, Arithmetic::Fixed, 2e-3, path)
+                .is_ok_and(|rest| (LENGTHS.0..=LENGTHS.1).contains(&rest.row().0.fascicle_length))
+        };
+        let paths = bouts.iter().flat_map(|bout| bout.path.iter().map(|point| point.1));
+        let (least, most) = paths.fold((0.0_f64, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
+        link::validate(&self.muscle).is_ok()
+            && self.curve.is_none_or(|curve| curve.validate().is_ok())
+            && [least, most]
+                .iter()
+                .all(|change| rests(setting.neutral + change * setting.fascicle + self.offset))
+    }
+
+    /// Force (N) at every reading of a bout, by the reference.
+    pub fn forces(
+        &self,
+        setting: &Setting,
+        mode: Mode,
+        bout: &Bout,
+    ) -> Result<Vec<f64>, PatientError> {
+        let trace = bout.inputs(setting, self.curve.as_ref(), self.offset)?;
+        let rows = engine::run(&self.muscle, mode, Arithmetic::Reference, &trace)?;
+        Ok(rows.iter().step_by(STRIDE).map(|row| row.0.force).collect())
+    }
+
+    /// One reading: a force with noise.
+    pub fn reading(&mut self, force: f64) -> f64 {
+        force + NOISE * self.muscle.f0() * normal(&mut self.noise)
+    }
+}
+
+/// A muscle, a curve and an offset with these values.
+fn with(
+    named: &NamedMuscle,
+    free: &[Free],
+    values: &[f64],
+) -> (Muscle, Option<RecruitmentCurveParams>, f64) {
+    let parameter = |free: &Free| Parameter {
+        name: free.name.clone(),
+        place: free.place(),
+        start: free.mean,
+        bounds: free.bounds,
+        prior: None,
+    };
+    let parameters: Vec<Parameter> = free.iter().map(parameter).collect();
+    let muscle = applied(&named.muscle, &parameters, values, true);
+    let mut numbers = named.curve.as_ref().map(curve::values);
+    let mut offset = 0.0;
+    for (free, &value) in free.iter().zip(values) {
+        match (free.place(), &mut numbers) {
+            (Place::Curve(index), Some(numbers)) => numbers[index] = value,
+            (Place::Offset, _) => offset = value,
+            _ => {}
+        }
+    }
+    (muscle, numbers.map(curve::of_values), offset)
+}
+
+impl Free {
+    /// What it is of.
+    pub fn place(&self) -> Place {
+        match self.name.strip_prefix(CURVE).and_then(curve::key) {
+            _ if self.name == OFFSET => Place::Offset,
+            Some(index) => Place::Curve(index),
+            None => crate::fit::Key::named(&self.name).map_or(Place::Offset, Place::Muscle),
+        }
+    }
+}
+
+/// A value within its bounds, normally distributed but for the farthest.
+fn drawn(free: &Free, generator: &mut ChaCha8Rng) -> f64 {
+    loop {
+        let far = normal(generator);
+        let value = free.mean + far * free.spread;
+        if far.abs() <= FARTHEST && free.bounds.0 < value && value < free.bounds.1 {
+            return value;
+        }
+    }
+}
+
+/// Standard normal, by Box and Muller.
+fn normal(generator: &mut ChaCha8Rng) -> f64 {
+    // 53 bits, above 0 up to 1.
+    let mut share = || ((generator.next_u64() >> 11) + 1) as f64 * 2_f64.powi(-53);
+    let radius = (-2.0 * share().ln()).sqrt();
+    radius * (TAU * share()).cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_normal() {
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let all: Vec<f64> = (0..10_000).map(|_| normal(&mut generator)).collect();
+        let mean = all.iter().sum::<f64>() / 1e4;
+        let variance = all.iter().map(|x| x * x).sum::<f64>() / 1e4;
+        // Four standard errors: 0.01, and sqrt(2/n) = 0.014 of a variance.
+        assert!(mean.abs() < 0.04 && (variance - 1.0).abs() < 0.057, "{mean} {variance}");
+        let beyond = all.iter().filter(|x| x.abs() > 1.96).count();
+        assert!((412..=588).contains(&beyond), "5 %, four standard errors of 22: {beyond}");
+    }
+}
