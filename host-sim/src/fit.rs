@@ -20,7 +20,7 @@ mod trials;
 mod write;
 
 pub use keys::Key;
-pub use outcome::{Confirmed, Fit, TrialFit, fit};
+pub use outcome::{CONFIRMED, Confirmed, Fit, TrialFit, fit};
 pub use page::{PageError, page};
 pub use parameters::{Parameter, Place, Prior, applied};
 pub use priors::{Basis, Spread, spread};

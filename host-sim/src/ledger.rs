@@ -130,8 +130,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// Computes the rows that are missing, on all cores, and puts the table in order: it has the same bytes however
-    /// often it was interrupted.
+    /// Computes the rows that are missing, on all cores, and puts the table in order: it has the
+    /// same bytes however often it was interrupted.
     pub fn complete(
         &mut self,
         row: impl Fn(usize) -> Vec<String> + Sync,

@@ -2,7 +2,8 @@
 //!
 //! The definitions of the fits are in `data/measured`; the recordings are read from a folder.
 
-use crate::fit::{Fit, FitError, Role, Search, Start, Trials, fit};
+use crate::engine::Arithmetic;
+use crate::fit::{Fit, FitError, Role, Search, Start, TrialFit, Trials, fit};
 use crate::reference::Muscle;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,6 +16,9 @@ struct Known {
     trials: &'static str,
     /// Range of the published mean absolute errors, % of F0, if known.
     published: Option<[f64; 2]>,
+    /// Trial with an active stretch, isometric trial at its final length, and a time (s) at which
+    /// both are still active.
+    stretched: &'static [(&'static str, &'static str, f64)],
 }
 
 const KNOWN: [Known; 2] = [
@@ -25,14 +29,26 @@ const KNOWN: [Known; 2] = [
         // Six amplitudes, three Hill models fitted by their morphometry: Millard et al., J.
         // Biomech. Eng. 135 (2013) 021005.
         published: Some([3.3, 8.9]),
+        stretched: &[],
     },
     Known {
         folder: "herzog_leonard_2002",
         muscle: include_str!("../data/measured/herzog_leonard_2002.muscle.toml"),
         trials: include_str!("../data/measured/herzog_leonard_2002.trials.toml"),
         published: None,
+        stretched: &[
+            ("61", "60", 7.6),
+            ("63", "60", 7.6),
+            ("65", "60", 7.6),
+            ("45", "44", 9.9),
+            ("47", "44", 9.9),
+            ("50", "44", 9.9),
+        ],
     },
 ];
+
+/// Averaging time of forces, s.
+const AVERAGED: f64 = 0.3;
 
 /// Files of a folder that brings its own definition.
 const MUSCLE_FILE: &str = "muscle.toml";
@@ -112,6 +128,22 @@ pub struct Row {
     pub left_out: &'static str,
 }
 
+/// Residual force enhancement: force after an active stretch minus isometric force at the same
+/// length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enhancement {
+    /// Set of recordings.
+    pub dataset: String,
+    /// Trial with the stretch.
+    pub trial: String,
+    /// Isometric trial.
+    pub isometric: String,
+    /// Measured, % of measured F0.
+    pub measured_pct_f0: f64,
+    /// Of the model, % of measured F0.
+    pub model_pct_f0: f64,
+}
+
 /// Results.
 #[derive(Clone, Debug, Default)]
 pub struct Board {
@@ -123,6 +155,8 @@ pub struct Board {
     pub skipped: Vec<(String, String)>,
     /// Ablations that cannot be fitted, by set and left-out feature, with the reason.
     pub refused: Vec<(String, &'static str, String)>,
+    /// Residual force enhancement, of the complete model.
+    pub enhancements: Vec<Enhancement>,
 }
 
 /// A set of recordings on disk.
@@ -132,18 +166,28 @@ struct Found {
     start: Start,
     trials: Trials,
     published: Option<[f64; 2]>,
+    stretched: &'static [(&'static str, &'static str, f64)],
 }
 
 /// Compares the model with every set of recordings in `folder`, for the versions `left_out`.
 pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<Board, FitError> {
     let mut board = Board::default();
     let found = find(folder, &mut board.skipped)?;
-    let jobs: Vec<(&Found, LeftOut)> =
-        found.iter().flat_map(|set| left_out.iter().map(move |&out| (set, out))).collect();
-    let fits = jobs
-        .into_par_iter()
-        .map(|(set, out)| (set, out, set.fitted(out, search)))
-        .collect::<Vec<_>>();
+    let fits: Vec<(&Found, LeftOut, Result<Fit, FitError>)> = found
+        .par_iter()
+        .flat_map(|set| {
+            let whole = set.fitted(LeftOut::Nothing, None, search);
+            let others = left_out.par_iter().filter(|&&out| out != LeftOut::Nothing);
+            let mut fits: Vec<_> = match &whole {
+                Ok(whole) => {
+                    others.map(|&out| (set, out, set.fitted(out, Some(whole), search))).collect()
+                }
+                Err(_) => Vec::new(),
+            };
+            fits.insert(0, (set, LeftOut::Nothing, whole));
+            fits
+        })
+        .collect();
     for (set, out, fit) in fits {
         let fit = match fit {
             Ok(fit) => fit,
@@ -165,6 +209,9 @@ pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<B
             published_mae_pct_f0: set.published,
             left_out: out.name(),
         }));
+        if out == LeftOut::Nothing {
+            board.enhancements.extend(set.enhancements(&fit, f0));
+        }
         board.fits.push((set.name.clone(), out.name(), fit));
     }
     Ok(board)
@@ -180,8 +227,9 @@ fn find(folder: &Path, skipped: &mut Vec<(String, String)>) -> Result<Vec<Found>
             let start = Start::parse(known.muscle, &definition)?;
             let list = Path::new(known.folder).join(TRIALS_FILE);
             let trials = Trials::parse(known.trials, &list, &place, &start.named)?;
-            let (name, published) = (known.folder.to_owned(), known.published);
-            found.push(Found { name, folder: place, start, trials, published });
+            let name = known.folder.to_owned();
+            let Known { published, stretched, .. } = *known;
+            found.push(Found { name, folder: place, start, trials, published, stretched });
         } else {
             let reason = format!("{}: no such folder", place.display());
             skipped.push((known.folder.to_owned(), reason));
@@ -199,19 +247,54 @@ fn find(folder: &Path, skipped: &mut Vec<(String, String)>) -> Result<Vec<Found>
         let start = Start::read(&folder.join(MUSCLE_FILE))?;
         let trials = Trials::read(&folder.join(TRIALS_FILE), &folder, &start.named)?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        found.push(Found { name, folder, start, trials, published: None });
+        found.push(Found { name, folder, start, trials, published: None, stretched: &[] });
     }
     Ok(found)
 }
 
 impl Found {
-    fn fitted(&self, out: LeftOut, search: &Search) -> Result<Fit, FitError> {
+    /// Fits a version of the model: the complete one by the search, an ablation by one start from
+    /// the solution of the complete one.
+    fn fitted(&self, out: LeftOut, whole: Option<&Fit>, search: &Search) -> Result<Fit, FitError> {
         let mut start = self.start.named.clone();
         out.out_of(&mut start.muscle);
         let mut trials = self.trials.clone();
         trials.keep(|parameter| !out.concerns(&parameter.name));
-        fit(&start, self.start.keep_force, trials, search)
+        let starts = match whole {
+            None => search.starts,
+            Some(whole) => {
+                let ends = whole.estimates.iter().filter(|estimate| !estimate.at_bound);
+                trials.start_at(ends.map(|estimate| (estimate.name.as_str(), estimate.value)));
+                1
+            }
+        };
+        let search = Search { starts, ..*search };
+        // Not in the reference: it takes longer for these small muscles than the fit.
+        let confirm = [Arithmetic::F32, Arithmetic::Fixed];
+        fit(&start, self.start.keep_force, trials, &search, &confirm)
     }
+
+    fn enhancements<'a>(&'a self, fit: &'a Fit, f0: f64) -> impl Iterator<Item = Enhancement> + 'a {
+        let find = |name: &str| fit.trials.iter().find(|trial| trial.name == name);
+        self.stretched.iter().filter_map(move |&(trial, isometric, end)| {
+            let (stretched, held) = (find(trial)?, find(isometric)?);
+            let percent = |of: &dyn Fn(&TrialFit) -> f64| 100.0 * (of(stretched) - of(held)) / f0;
+            Some(Enhancement {
+                dataset: self.name.clone(),
+                trial: trial.to_owned(),
+                isometric: isometric.to_owned(),
+                measured_pct_f0: percent(&|t| average(&t.times, &t.measured, end)),
+                model_pct_f0: percent(&|t| average(&t.times, &t.model, end)),
+            })
+        })
+    }
+}
+
+/// Mean of the readings that end at a time (s).
+fn average(times: &[f64], forces: &[f64], end: f64) -> f64 {
+    let near = times.iter().zip(forces).filter(|(t, _)| (end - AVERAGED..=end).contains(*t));
+    let (sum, count) = near.fold((0.0, 0), |(sum, count), (_, force)| (sum + force, count + 1));
+    sum / f64::from(count)
 }
 
 /// Mean of the mean absolute errors of a set and a role; NaN if there are none.

@@ -53,6 +53,20 @@ pub const STACK: Place = Place {
     end: "<!-- end of memory -->",
 };
 
+/// Place of the recovery of synthetic patients.
+pub const RECOVERY: Place = Place {
+    file: "host-sim/docs/fitting.md",
+    begin: "<!-- recovery: cargo vm recover --output FILE --write -->",
+    end: "<!-- end of recovery -->",
+};
+
+/// Place of the comparison with real muscle.
+pub const SCOREBOARD: Place = Place {
+    file: "host-sim/docs/fitting.md",
+    begin: "<!-- scoreboard: cargo vm measured --data DIR --write -->",
+    end: "<!-- end of scoreboard -->",
+};
+
 /// Why a document could not be compared or written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeError {

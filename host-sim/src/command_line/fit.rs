@@ -1,7 +1,7 @@
 //! `vm fit`: a muscle fitted to recordings.
 
 use super::print;
-use crate::fit::{Fit, Search, Start, Trials, fit, fitted_file, page};
+use crate::fit::{CONFIRMED, Fit, Search, Start, Trials, fit, fitted_file, page};
 use crate::trace;
 use clap::Args;
 use comfy_table::{Table, presets};
@@ -70,7 +70,7 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
     let folder = args.data.as_deref().unwrap_or(own);
     let trials = Trials::read(&args.trials, folder, &start.named)?;
     let search = args.search.search();
-    let fit = fit(&start.named, start.keep_force, trials, &search)?;
+    let fit = fit(&start.named, start.keep_force, trials, &search, &CONFIRMED)?;
     let origin = format!(
         "Fitted by vm fit to {}, from {}, {} starts, seed {}.",
         file_name(&args.trials),

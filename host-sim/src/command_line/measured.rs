@@ -4,6 +4,7 @@ use super::fit::SearchArgs;
 use super::{complain, print};
 use crate::fit::Role;
 use crate::measured::{self, Board, LeftOut};
+use crate::readme;
 use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
@@ -17,20 +18,28 @@ pub struct MeasuredArgs {
     /// Print the trials as a JSON array instead of tables.
     #[arg(long)]
     json: bool,
-    /// Also fit models without yield and without length dependence of Af and FV.
+    /// Skip the models without yield and without length dependence of Af and FV.
     #[arg(long)]
-    ablation: bool,
+    no_ablation: bool,
+    /// Write the tables to docs/fitting.md.
+    #[arg(long)]
+    write: bool,
     /// Skip missing sets without an error.
     #[arg(long)]
     allow_missing: bool,
-    #[command(flatten)]
-    search: SearchArgs,
+    /// Number of starts of the complete model; ablations start once, from its solution.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
+    /// Random seed of the starts.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
 /// True if no set was missing, or missing sets are allowed.
 pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
-    let left_out = if args.ablation { &LeftOut::ALL[..] } else { &LeftOut::ALL[..1] };
-    let board = measured::measure(&args.data, left_out, &args.search.search())?;
+    let left_out = if args.no_ablation { &LeftOut::ALL[..1] } else { &LeftOut::ALL[..] };
+    let search = SearchArgs { starts: args.starts, seed: args.seed }.search();
+    let board = measured::measure(&args.data, left_out, &search)?;
     for (set, reason) in &board.skipped {
         complain(&format!("SKIPPED {set}: {reason}"));
     }
@@ -40,16 +49,34 @@ pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
     if args.json {
         print(&serde_json::to_string_pretty(&board.rows)?)?;
     } else {
-        print(&trials(&board))?;
-        print(&means(&board, left_out))?;
-        for (set, _, fit) in board.fits.iter().filter(|fit| fit.1 == LeftOut::Nothing.name()) {
-            for estimate in &fit.estimates {
-                let (name, value) = (&estimate.name, estimate.value);
-                print(&format!("{set}: {name} = {value:.5} {}", estimate.note()))?;
-            }
-        }
+        print(&text(&board, left_out))?;
+    }
+    if args.write {
+        readme::SCOREBOARD.write(&text(&board, left_out))?;
     }
     Ok(board.skipped.is_empty() || args.allow_missing)
+}
+
+/// The scoreboard, what was fitted, and what the model cannot.
+fn text(board: &Board, left_out: &[LeftOut]) -> String {
+    let mut text = format!("{}\n\n{}\n\n", trials(board), means(board, left_out));
+    for (set, _, fit) in board.fits.iter().filter(|fit| fit.1 == LeftOut::Nothing.name()) {
+        for estimate in &fit.estimates {
+            let (name, value) = (&estimate.name, estimate.value);
+            text += format!("- {set}: {name} = {value:.5} {}", estimate.note()).trim_end();
+            text += "\n";
+        }
+    }
+    for left in &board.enhancements {
+        text += &format!(
+            "- {}: residual force enhancement {:.1} % of F0 (trial {} against {}); model {:.1} %\n",
+            left.dataset, left.measured_pct_f0, left.trial, left.isometric, left.model_pct_f0
+        );
+    }
+    for (set, out, reason) in &board.refused {
+        text += &format!("- {set} without {out}: {reason}\n");
+    }
+    text
 }
 
 fn table(header: &[&str], numbers: std::ops::Range<usize>) -> Table {

@@ -3,7 +3,7 @@
 use super::fit::SearchArgs;
 use super::{ModeName, print};
 use crate::fit::Start;
-use crate::muscles;
+use crate::readme;
 use crate::recover::{self, Study, Summary, summaries};
 use crate::reference::Mode;
 use clap::{Args, ValueEnum};
@@ -31,7 +31,8 @@ impl From<RecordedMode> for Mode {
 
 #[derive(Debug, Args)]
 pub struct ProtocolArgs {
-    /// The muscle that is expected, in TOML, or its name in `vm muscles`; without it, the one of `vm recover`.
+    /// The muscle that is expected, in TOML, or its name in `vm muscles`; without it, the one of
+    /// `vm recover`.
     #[arg(long)]
     muscle: Option<PathBuf>,
     /// How it is recruited.
@@ -53,12 +54,16 @@ pub struct RecoverArgs {
     /// How they are recruited.
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["fes", "continuous"])]
     modes: Vec<RecordedMode>,
-    /// Where their rows go, in CSV. If there are some already, of the same patients, it goes on with the others.
+    /// Where their rows go, in CSV. If there are some already, of the same patients, it goes on
+    /// with the others.
     #[arg(long)]
     output: PathBuf,
     /// Print the summary as JSON instead of tables.
     #[arg(long)]
     json: bool,
+    /// Write the tables into docs/fitting.md.
+    #[arg(long)]
+    write: bool,
     /// How many starts each fit has.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
@@ -67,19 +72,17 @@ pub struct RecoverArgs {
     seed: u64,
 }
 
-/// The text of a muscle's file.
-fn muscle(path: Option<&Path>) -> Result<(String, Start), Box<dyn Error>> {
-    let (text, path) = match path {
-        Some(path) => (muscles::text(path)?, path),
-        None => (recover::MUSCLE.to_owned(), Path::new("recovery_muscle.toml")),
-    };
-    let start = Start::parse(&text, path)?;
-    Ok((text, start))
+/// The muscle that is named, or the one that is built in.
+fn muscle(path: Option<&Path>) -> Result<Start, Box<dyn Error>> {
+    Ok(match path {
+        Some(path) => Start::read(path)?,
+        None => Start::parse(recover::MUSCLE, Path::new("recovery_muscle.toml"))?,
+    })
 }
 
 /// Writes a protocol.
 pub fn protocol(args: &ProtocolArgs) -> Result<(), Box<dyn Error>> {
-    let (_, start) = muscle(args.muscle.as_deref())?;
+    let start = muscle(args.muscle.as_deref())?;
     let mode = args.mode.into();
     std::fs::create_dir_all(&args.out).map_err(|e| format!("{}: {e}", args.out.display()))?;
     recover::write(&start.named, mode, &args.out)?;
@@ -99,7 +102,7 @@ struct Recovery<'a> {
 
 /// Recovers patients; true if force is predicted as well as it is meant to be.
 pub fn recover(args: &RecoverArgs) -> Result<bool, Box<dyn Error>> {
-    let (text, start) = muscle(args.muscle.as_deref())?;
+    let start = muscle(args.muscle.as_deref())?;
     let twice = |index: &usize| args.modes[..*index].contains(&args.modes[*index]);
     if (1..args.modes.len()).any(|index| twice(&index)) {
         return Err("--modes: one is given twice".into());
@@ -107,26 +110,16 @@ pub fn recover(args: &RecoverArgs) -> Result<bool, Box<dyn Error>> {
     let search = SearchArgs { starts: args.starts, seed: args.seed }.search();
     let modes = args.modes.iter().map(|&mode| mode.into()).collect();
     let study = Study { start, patients: args.patients.into(), modes, search };
-    let ledger = study.run(&text, &args.output)?;
+    let ledger = study.run(&args.output)?;
     let found = summaries(&study, &ledger);
     if args.json {
         let recovery = Recovery { patients: args.patients, seed: args.seed, modes: &found };
         print(&serde_json::to_string_pretty(&recovery)?)?;
     } else {
-        for summary in &found {
-            print(&recover::table(summary))?;
-            print(&format!(
-                "{}: force predicted to {:.2} % of F0 (median), {:.2} % (95th percentile), to 2 % in {} of {}; \
-                 {} fits failed; intervals hold {:.1} % of truths\n",
-                summary.mode,
-                summary.median_predicted_rms_pct_f0,
-                summary.p95_predicted_rms_pct_f0,
-                summary.predicted_to_2_pct,
-                summary.patients,
-                summary.failed,
-                summary.coverage_pct(),
-            ))?;
-        }
+        print(&recover::text(&found))?;
+    }
+    if args.write {
+        readme::RECOVERY.write(&recover::text(&found))?;
     }
     Ok(found.iter().all(Summary::predicts))
 }

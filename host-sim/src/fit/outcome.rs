@@ -67,12 +67,17 @@ pub struct Fit {
     pub starts: (usize, usize),
 }
 
-/// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass.
+/// Arithmetics in which a fitted muscle is confirmed, besides `f64`.
+pub const CONFIRMED: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
+
+/// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass. The
+/// result is run again in the arithmetics `confirm`.
 pub fn fit(
     start: &NamedMuscle,
     keep_force: bool,
     trials: Trials,
     search: &Search,
+    confirm: &[Arithmetic],
 ) -> Result<Fit, FitError> {
     let problem = Problem::new(start.muscle.clone(), keep_force, trials)?;
     let (solution, near) = search.best(&problem)?;
@@ -112,9 +117,9 @@ pub fn fit(
     let forces = |played: &[super::problem::Played]| -> Vec<f64> {
         played.iter().flat_map(|played| played.model.iter().copied()).collect()
     };
-    let confirmed = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed]
-        .into_iter()
-        .map(|arithmetic| {
+    let confirmed = confirm
+        .iter()
+        .map(|&arithmetic| {
             let error = ForceError::between(&forces(&played(arithmetic)?), &forces(&all), f0);
             Ok(Confirmed { arithmetic, difference: (error.max, error.rms) })
         })

@@ -47,7 +47,8 @@ pub fn spread(name: &str) -> Option<Spread> {
     find(name).or_else(|| find(last))
 }
 
-/// The published spread of a parameter, as a share of its mean; none where there is only an assumption.
+/// The published spread of a parameter, as a share of its mean; none where there is only an
+/// assumption.
 pub fn published(name: &str) -> Option<f64> {
     spread(name).filter(|row| row.basis != Basis::Assumed).map(|row| row.relative_spread)
 }
@@ -61,6 +62,7 @@ pub fn names() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::coefficients;
     use crate::fit::keys::Key;
     use crate::muscle_file::curve;
 
@@ -81,10 +83,26 @@ mod tests {
     }
 
     #[test]
+    fn spreads_between_presets_are_those_of_the_table() {
+        let of =
+            |set: &str, key: &str| coefficients::fiber_row(set).and_then(|r| r.get(key).copied());
+        for row in all().into_iter().filter(|row| row.basis == Basis::Presets) {
+            let between = |fiber: &str| {
+                let sets = ["human-vm4", "feline-vm4"].map(|set| format!("{set}/{fiber}"));
+                let [one, other] = sets.map(|set| of(&set, &row.key).expect("a coefficient"));
+                // Of two values, standard deviation is difference over the root of two.
+                ((one - other) / (one + other)).abs() * 2_f64.sqrt()
+            };
+            let widest = between("slow").max(between("fast"));
+            assert!((widest - row.relative_spread).abs() < 5e-4, "{}: {widest}", row.key);
+        }
+    }
+
+    #[test]
     fn an_assumption_is_not_published() {
         assert_eq!(published("fiber[1].f05_pps"), Some(0.333));
-        assert!(spread("tendon_length_cm").is_some());
-        assert_eq!(published("tendon_length_cm"), None);
+        assert!(spread("max_path_length_cm").is_some());
+        assert_eq!(published("max_path_length_cm"), None);
         // Of fatigue, not that of the force-length relation.
         assert!(spread("fatigue.beta").is_some() && spread("fiber[0].beta").is_none());
     }

@@ -228,6 +228,15 @@ impl Trials {
         self.parameters.retain(|parameter| parameter.place == Place::Offset || wanted(parameter));
     }
 
+    /// Starts the search at these values of the parameters that have these names.
+    pub fn start_at<'a>(&mut self, values: impl Iterator<Item = (&'a str, f64)>) {
+        for (name, value) in values {
+            for parameter in self.parameters.iter_mut().filter(|p| p.name == name) {
+                parameter.start = value;
+            }
+        }
+    }
+
     fn check(&self, refuse: Refuse<'_>) -> Result<(), FitError> {
         let fitted = || self.trials.iter().filter(|trial| trial.role == Role::Fit);
         let readings: usize = fitted().map(|trial| trial.readings.len()).sum();

@@ -42,7 +42,8 @@ pub struct Setting {
     pub neutral: f64,
     /// L_ce0, m.
     pub fascicle: f64,
-    /// Amplitude at level 1, mA; none without a recruitment curve, where the level is the activation.
+    /// Amplitude at level 1, mA; none without a recruitment curve, where the level is the
+    /// activation.
     pub full_ma: Option<f64>,
 }
 
@@ -72,7 +73,8 @@ impl Bout {
         lasts.filter(|(level, _)| *level > 0.0).map(|(_, lasts)| lasts).sum()
     }
 
-    /// What a muscle with this recruitment curve, on a path longer by `offset` (m), is made to do, tick by tick.
+    /// What a muscle with this recruitment curve, on a path longer by `offset` (m), is made to do,
+    /// tick by tick.
     pub fn inputs(
         &self,
         setting: &Setting,

@@ -13,8 +13,9 @@ use std::fmt::Write;
 pub const RECORDED: &str = "recorded";
 /// By how much the path is longer than was thought, m.
 pub const OFFSET: &str = "path_offset_m";
-/// Its spread, m; assumed: how well a joint's angle tells the path.
-const OFFSET_SPREAD: f64 = 0.01;
+/// Its spread, m; assumed: as much as that of the tendon's length, with which the path of a limb
+/// goes.
+const OFFSET_SPREAD: f64 = 0.025;
 /// Bounds are so many spreads from the mean, but not below a fifth of it.
 const FAR: f64 = 4.0;
 
@@ -68,7 +69,7 @@ fn one(named: &NamedMuscle, name: String) -> Option<Free> {
     if name == OFFSET {
         let (mean, spread) = (0.0, OFFSET_SPREAD);
         let bounds = (-FAR * spread, FAR * spread);
-        let source = "assumed: how well a joint's angle tells the path".to_owned();
+        let source = "assumed: as much as that of the tendon's length".to_owned();
         return Some(Free { name, mean, spread, bounds, source });
     }
     let mean = match name.strip_prefix(CURVE) {

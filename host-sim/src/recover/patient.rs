@@ -15,11 +15,14 @@ use vm_nostd::RecruitmentCurveParams;
 
 /// No patient is further than so many spreads from the mean in any parameter.
 const FARTHEST: f64 = 2.5;
-/// Fascicles of a patient at rest are between these lengths wherever the protocol holds them, L_ce0: a joint does not
-/// take its muscle further.
+/// Fascicles of a patient at rest are between these lengths wherever the protocol holds them,
+/// L_ce0: a joint does not take its muscle further.
 const LENGTHS: (f64, f64) = (0.6, 1.35);
+/// Longest fascicles of a patient, L_ce0: 1.4 of the human muscles here is a guess between 1.3 and
+/// 1.5.
+const LONGEST: (f64, f64) = (1.2, 1.6);
 /// So many draws that no such muscle can be had from: the spreads are not those of muscles.
-const DRAWS: usize = 1000;
+const DRAWS: usize = 10_000;
 /// Noise of a reading, share of F0.
 const NOISE: f64 = 0.01;
 /// One reading per so many ticks.
@@ -82,7 +85,9 @@ impl Patient {
         };
         let paths = bouts.iter().flat_map(|bout| bout.path.iter().map(|point| point.1));
         let (least, most) = paths.fold((0.0_f64, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
+        let longest = self.muscle.maximum_fascicle_length();
         link::validate(&self.muscle).is_ok()
+            && (LONGEST.0..=LONGEST.1).contains(&longest)
             && self.curve.is_none_or(|curve| curve.validate().is_ok())
             && [least, most]
                 .iter()

@@ -1,4 +1,5 @@
-//! The recordings that tell a muscle's parameters: half a minute of stimulation, or of effort, at three lengths.
+//! The recordings that tell a muscle's parameters: half a minute of stimulation, or of effort, at
+//! three lengths.
 
 use super::bout::{Bout, Setting, Steps, WIDTH_US};
 use super::list::list;
@@ -154,7 +155,8 @@ pub fn file_name(bout: &Bout) -> String {
     format!("{}.csv", bout.name)
 }
 
-/// Writes the inputs of a protocol into a folder, and the list of recordings that `vm fit` takes when they are there.
+/// Writes the inputs of a protocol into a folder, and the list of recordings that `vm fit` takes
+/// when they are there.
 pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), WriteError> {
     let setting = Setting::of(named, mode);
     let bouts = bouts(mode, named.muscle.fatigue.is_some());

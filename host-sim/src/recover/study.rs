@@ -3,7 +3,7 @@
 use super::bout::{Bout, Setting};
 use super::list::{Free, RECORDED, free};
 use super::patient::{Patient, STRIDE};
-use super::protocol::{self, WriteError, bouts, file_name};
+use super::protocol::{self, bouts, file_name};
 use crate::engine::mode_name;
 use crate::fit::{Fit, Role, Search, Start, Trials, fit};
 use crate::golden;
@@ -25,17 +25,6 @@ pub struct Study {
     pub modes: Vec<Mode>,
     /// How each is searched for; the seed also draws them.
     pub search: Search,
-}
-
-/// Why there is no study.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// The protocol could not be written.
-    #[error(transparent)]
-    Protocol(#[from] WriteError),
-    /// The table.
-    #[error(transparent)]
-    Ledger(#[from] LedgerError),
 }
 
 /// What a row says of a parameter: `truth`, `fitted`, and the standard error, none at a bound.
@@ -64,11 +53,11 @@ impl Study {
     }
 
     /// The first two lines of the table: what made it, and its columns.
-    fn head(&self, muscle: &str) -> [String; 2] {
+    fn head(&self) -> [String; 2] {
         let modes: Vec<&str> = self.modes.iter().map(|&mode| mode_name(mode)).collect();
         let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
         let mut digest = crc.digest();
-        digest.update(muscle.as_bytes());
+        digest.update(format!("{:?}", self.start.named).as_bytes());
         for &mode in &self.modes {
             let bouts = self.bouts(mode);
             digest.update(super::list(&self.start.named, mode, &bouts).as_bytes());
@@ -94,12 +83,11 @@ impl Study {
         bouts(mode, self.start.named.muscle.fatigue.is_some())
     }
 
-    /// Fits all patients that are not in the table yet. `muscle` is the text of the mean's file.
-    pub fn run(&self, muscle: &str, output: &Path) -> Result<Ledger, StudyError> {
-        // In a folder that is removed: recordings are files, as vm fit's are.
+    /// Fits all patients that are not in the table yet.
+    pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |case: usize| vec![case.to_string(), mode_name(self.mode(case)).to_owned()];
         let count = self.patients * self.modes.len();
-        let mut ledger = Ledger::open(output, &self.head(muscle), count, &begin)?;
+        let mut ledger = Ledger::open(output, &self.head(), count, &begin)?;
         ledger.complete(|case| self.row(case))?;
         Ok(ledger)
     }
@@ -144,15 +132,15 @@ impl Study {
             .map_err(|error| error.to_string())
     }
 
-    /// Records a patient, fits, and says how far the unseen bout is from what the patient does there without noise,
-    /// root mean square, % of the patient's F0.
+    /// Records a patient, in a folder that is removed, fits, and says how far the unseen bout is
+    /// from what the patient does there without noise, root mean square, % of the patient's F0.
     fn recover(&self, mut patient: Patient, mode: Mode) -> Result<(Fit, f64), String> {
         let named = &self.start.named;
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         self.record(&mut patient, mode, folder.path())?;
         let trials = Trials::read(&folder.path().join("trials.toml"), folder.path(), named)
             .map_err(|error| error.to_string())?;
-        let fit = fit(named, self.start.keep_force, trials, &self.search)
+        let fit = fit(named, self.start.keep_force, trials, &self.search, &[])
             .map_err(|error| error.to_string())?;
         let unseen = fit.trials.iter().find(|trial| trial.role == Role::Predict);
         let predicted = unseen.map_or(f64::NAN, |trial| trial.rms_pct_f0);
@@ -173,7 +161,8 @@ impl Study {
             let forces = patient.forces(&setting, mode, &bout).map_err(said)?;
             for (index, force) in forces.into_iter().enumerate() {
                 let time = (index * STRIDE) as f64 * super::bout::TICK;
-                // What is predicted is compared with the muscle, not with the noise of its recording.
+                // What is predicted is compared with the muscle, not with the noise of its
+                // recording.
                 let force = if bout.role == Role::Fit { patient.reading(force) } else { force };
                 writeln!(text, "{time:.3},{force:.6}").expect("a string grows");
             }

@@ -1,4 +1,5 @@
-//! How well patients were recovered: medians, 95th percentiles, and how often intervals held the truth.
+//! How well patients were recovered: medians, 95th percentiles, and how often intervals held the
+//! truth.
 
 use super::list::{Free, OFFSET, free};
 use super::study::{LEADING, OF_PARAMETER, Study, TRAILING};
@@ -129,14 +130,35 @@ fn recovered<'a>(
     }
 }
 
-/// The least value that a share of the sorted values do not exceed; not a number where there are none.
+/// The least value that a share of the sorted values do not exceed; not a number where there are
+/// none.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let place = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(place.max(1) - 1).copied().unwrap_or(f64::NAN)
 }
 
+/// Tables of all modes, and what they come to.
+pub fn text(summaries: &[Summary]) -> String {
+    let one = |summary: &Summary| {
+        format!(
+            "{}\n\n{}: force of the unseen trial within {:.2} % of F0 rms (median), {:.2} % (95th \
+             percentile), 2 % in {} of {} patients; \
+             {} fits failed; intervals hold {:.1} % of truths\n",
+            table(summary),
+            summary.mode,
+            summary.median_predicted_rms_pct_f0,
+            summary.p95_predicted_rms_pct_f0,
+            summary.predicted_to_2_pct,
+            summary.patients,
+            summary.failed,
+            summary.coverage_pct(),
+        )
+    };
+    summaries.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
 /// The parameters of a mode as a table.
-pub fn table(summary: &Summary) -> Table {
+fn table(summary: &Summary) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
     table.set_header(["parameter", "spread %", "median error %", "95th percentile %", "covered"]);
