@@ -94,6 +94,15 @@ pub enum Class {
 }
 
 impl Class {
+    /// Its name on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Economy => "economy",
+            Self::Standard => "standard",
+            Self::Fine => "fine",
+        }
+    }
+
     fn of_model(self) -> vm::Class {
         match self {
             Self::Economy => vm::Class::Economy,

@@ -61,6 +61,10 @@ static int misuse(void) {
     CHECK(vm_f32_build(&muscle_f32, sizeof muscle_f32, &bad, VM_MODE_FES, 1e-3, &error) == VM_RESULT_PARAMETER);
     CHECK(equal(error.field, "mass") && error.fiber == -1 && error.value == -1.0 && error.least == 1e-5);
     bad = params;
+    bad.accuracy_class = 3;
+    CHECK(vm_f32_build(&muscle_f32, sizeof muscle_f32, &bad, VM_MODE_FES, 1e-3, &error) == VM_RESULT_PARAMETER);
+    CHECK(equal(error.field, "accuracy_class") && error.fiber == -1 && error.value == 3.0 && error.most == 2.0);
+    bad = params;
     bad.fibers[1].has_sag = 7;
     CHECK(vm_f32_build(&muscle_f32, sizeof muscle_f32, &bad, VM_MODE_FES, 1e-3, &error) == VM_RESULT_PARAMETER);
     CHECK(equal(error.field, "has_sag") && error.fiber == 1 && error.value == 7.0 && error.most == 1.0);

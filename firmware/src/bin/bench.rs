@@ -12,9 +12,9 @@ use cortex_m_rt::entry;
 use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
 use vm_nostd::{
-    ActingLength, EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits,
-    Muscle, NaturalContinuous, NaturalDiscrete, Output, ParameterError, Recruitment, Scalar, State,
-    TimeStep, UnitSizes,
+    ActingLength, Class, EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes,
+    MotorUnits, Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Output, ParameterError,
+    Recruitment, Scalar, State, TimeStep, UnitSizes,
 };
 
 static INPUTS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/bench_inputs.bin"));
@@ -138,6 +138,15 @@ fn drive_all() -> Result<(), ParameterError> {
 /// What steps a muscle.
 type Step<S, R> = fn(&Muscle<S, R, 2>, &mut State<S, R, 2>, Input<S>) -> Output<S>;
 
+/// The accuracy class that the bench was built for.
+fn class() -> Class {
+    match option_env!("VM_BENCH_CLASS") {
+        Some("economy") => Class::Economy,
+        Some("fine") => Class::Fine,
+        _ => Class::Standard,
+    }
+}
+
 /// Drives the model.
 fn model<S: Scalar, R: Recruitment<S, 2, Units = ()>>(
     case: u32,
@@ -161,7 +170,8 @@ fn model_with<S: Scalar, R: Recruitment<S, 2>>(
     units: &R::Units,
     step: Step<S, R>,
 ) -> Result<(), ParameterError> {
-    let muscle = Muscle::<S, R, 2>::build_with_units(&MUSCLE, units, TimeStep::MILLISECOND)?;
+    let params = MuscleParams { class: class(), ..MUSCLE };
+    let muscle = Muscle::<S, R, 2>::build_with_units(&params, units, TimeStep::MILLISECOND)?;
     drive(
         case,
         |path| muscle.rest(S::path_length(path.into())),

@@ -4,6 +4,7 @@ use super::{complain, print};
 use crate::cycles::{
     self, Argument, CLOCKS, Cost, MARGIN, Part, Profile, Row, Spread, Tracer, UnitCost,
 };
+use crate::engine::Class;
 use crate::readme;
 use crate::trace::write_atomically;
 use clap::Args;
@@ -57,6 +58,9 @@ pub struct CyclesArgs {
     /// Number of most expensive addresses to list.
     #[arg(long, num_args = 0..=1, default_missing_value = "40", value_name = "COUNT")]
     listing: Option<usize>,
+    /// Accuracy class of the model. Budgets and documents are of the standard class.
+    #[arg(long, value_enum, default_value_t, conflicts_with_all = ["check", "write", "elf"])]
+    class: Class,
     /// Source of the executed addresses.
     #[arg(long, value_enum, default_value_t = Tracer::Auto)]
     tracer: Tracer,
@@ -71,7 +75,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// Runs the command; false if a check failed.
 pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     let profile = match (&args.case, &args.elf, &args.symbol) {
-        (Some(case), ..) => cycles::of_case(case, args.tick, args.tracer)?,
+        (Some(case), ..) => cycles::of_case(case, args.tick, args.tracer, args.class)?,
         (None, Some(elf), Some(symbol)) => {
             let timeout = Duration::from_secs(args.timeout.into());
             let entry = args.entry.as_deref();
@@ -98,7 +102,7 @@ pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
 }
 
 fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
-    let rows = cycles::report(args.tracer)?;
+    let rows = cycles::report(args.tracer, args.class)?;
     let costs = UnitCost::of(&rows);
     if args.write {
         readme::CYCLES.write(&readme::cycles(&rows))?;

@@ -4,8 +4,10 @@ use super::case::{Case, Run};
 use super::follow::{Count, FollowError, Followed, follow};
 use super::image::Image;
 use super::trace::{Program, Tracer};
+use crate::engine::Class;
 use crate::output_file::temporary_folder;
 use crate::target::{self, TargetError};
+use std::path::Path;
 
 /// Why a case could not be measured.
 #[derive(Debug, thiserror::Error)]
@@ -31,11 +33,16 @@ pub fn measure(
     runs: &[Run],
     tracer: Tracer,
     count: Count,
+    class: Class,
 ) -> Result<(Image, Vec<Followed>), BenchError> {
     let folder = temporary_folder()?;
     let inputs = folder.path().join("inputs.bin");
     std::fs::write(&inputs, encode(runs))?;
-    let path = target::build(target::STM32F405, "bench", &[("VM_BENCH_INPUTS", &inputs)])?;
+    let path = target::build(
+        target::STM32F405,
+        "bench",
+        &[("VM_BENCH_INPUTS", &inputs), ("VM_BENCH_CLASS", Path::new(class.name()))],
+    )?;
     let image = Image::read(&path).map_err(FollowError::from)?;
     let functions: Vec<&str> = cases.iter().map(|case| case.function).collect();
     let program = Program::on_board(&path);

@@ -1,7 +1,7 @@
 //! What is measured: the model's tick, and what it is compared with.
 
 use super::adversarial;
-use crate::engine::{self, Arithmetic, RunError};
+use crate::engine::{self, Arithmetic, Class, RunError};
 use crate::metrics::{ForceError, forces};
 use crate::reference::Mode;
 use crate::scenario::{self, Scenario, paper_muscle};
@@ -156,13 +156,18 @@ impl Case {
     }
 
     /// Largest error of the force over the scenarios, % of F0; none where there is no force.
-    pub fn largest_error(&self, scenarios: &[Scenario]) -> Result<Option<f64>, RunError> {
+    pub fn largest_error(
+        &self,
+        scenarios: &[Scenario],
+        class: Class,
+    ) -> Result<Option<f64>, RunError> {
         let Some(mode) = self.mode() else { return Ok(None) };
         let errors: Vec<f64> = scenarios
             .par_iter()
             .map(|scenario| {
                 let run = |arithmetic| {
-                    let rows = engine::run(&scenario.muscle, mode, arithmetic, &scenario.trace)?;
+                    let Scenario { muscle, trace, .. } = scenario;
+                    let rows = engine::run_in_class(muscle, mode, arithmetic, class, trace)?;
                     Ok::<_, RunError>(forces(rows.iter().map(|row| &row.0)))
                 };
                 let computed = match self.subject {

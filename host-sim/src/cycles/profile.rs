@@ -10,6 +10,7 @@ use super::follow::{Count, FollowError, Followed, follow};
 use super::image::{Image, ImageError};
 use super::instruction::Instruction;
 use super::trace::{Program, Tracer};
+use crate::engine::Class;
 use crate::output_file::temporary_folder;
 use crate::reference::Input;
 use crate::target;
@@ -86,7 +87,12 @@ impl Profile {
 }
 
 /// A case of the bench: all its ticks, or one of them, which is reached as fast as may be.
-pub fn of_case(name: &str, tick: Option<usize>, tracer: Tracer) -> Result<Profile, ProfileError> {
+pub fn of_case(
+    name: &str,
+    tick: Option<usize>,
+    tracer: Tracer,
+    class: Class,
+) -> Result<Profile, ProfileError> {
     let case = Case::named(name).ok_or_else(|| ProfileError::NoCase(name.to_owned()))?;
     let mut runs: Vec<Run> =
         case::runs().into_iter().filter(|run| run.mask & case.bit() != 0).collect();
@@ -110,7 +116,7 @@ pub fn of_case(name: &str, tick: Option<usize>, tracer: Tracer) -> Result<Profil
         count = Count::At(row - 1);
         runs = vec![run];
     }
-    let (image, followed) = measure(&[*case], &runs, tracer, count)?;
+    let (image, followed) = measure(&[*case], &runs, tracer, count, class)?;
     let Some(mut followed) = followed.into_iter().next() else {
         return Err(FollowError::NotCalled(case.function.to_owned()).into());
     };

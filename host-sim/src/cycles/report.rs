@@ -8,7 +8,7 @@ use super::estimator::Cost;
 use super::follow::{Count, Followed};
 use super::image::{Image, ImageError};
 use super::trace::Tracer;
-use crate::engine::{self, Arithmetic, RunError};
+use crate::engine::{self, Arithmetic, Class, RunError};
 use crate::reference::Mode;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -80,6 +80,9 @@ pub struct Row {
     pub arithmetic: String,
     /// The core.
     pub target: String,
+    /// Accuracy class of the model.
+    #[serde(default)]
+    pub class: String,
     /// Ticks that were measured.
     pub ticks: usize,
     /// Most instructions of a tick.
@@ -177,14 +180,14 @@ pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
 }
 
 /// Measures all cases and holds the model's to their budgets.
-pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
+pub fn report(tracer: Tracer, class: Class) -> Result<Vec<Row>, ReportError> {
     let budgets: Budgets = Budgets::read()?;
     let scenarios = case::scenarios();
-    let (image, followed) = measure(&CASES, &case::runs(), tracer, Count::All)?;
+    let (image, followed) = measure(&CASES, &case::runs(), tracer, Count::All, class)?;
     let mut rows = Vec::new();
     for (case, followed) in CASES.iter().zip(&followed) {
-        let error = case.largest_error(&scenarios)?;
-        rows.push(row(case, followed, error));
+        let error = case.largest_error(&scenarios, class)?;
+        rows.push(Row { class: class.name().to_owned(), ..row(case, followed, error) });
     }
     for (index, case) in CASES.iter().enumerate() {
         if case.is_model() {
@@ -194,7 +197,10 @@ pub fn report(tracer: Tracer) -> Result<Vec<Row>, ReportError> {
             rows[index].ratio = cycles_of_model(&rows, case.mode())
                 .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
         }
-        budgets.hold(case, &mut rows[index]);
+        // Budgets are of the standard class.
+        if class == Class::Standard {
+            budgets.hold(case, &mut rows[index]);
+        }
     }
     Ok(rows)
 }
@@ -234,6 +240,7 @@ fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
         mode: case.mode().map_or("-", engine::mode_name).to_owned(),
         arithmetic: case.arithmetic().name().to_owned(),
         target: "cortex-m4f".to_owned(),
+        class: String::new(),
         ticks: calls.len(),
         instructions_max: calls.iter().map(|cost| cost.instructions).max().unwrap_or(0),
         cycles_opt_mean: optimistic.mean,

@@ -37,22 +37,37 @@ typedef struct VmMuscleFixed VmMuscleFixed;
 /**
  * Bytes of a VmMuscleF32.
  */
-#define VM_MUSCLE_F32_SIZE 568
+#define VM_MUSCLE_F32_SIZE 584
 
 /**
  * Words of its saved state.
  */
-#define VM_F32_STATE_WORDS 15
+#define VM_F32_STATE_WORDS 22
 
 /**
  * Bytes of a VmMuscleFixed.
  */
-#define VM_MUSCLE_FIXED_SIZE 680
+#define VM_MUSCLE_FIXED_SIZE 704
 
 /**
  * Words of its saved state.
  */
-#define VM_FIXED_STATE_WORDS 24
+#define VM_FIXED_STATE_WORDS 31
+
+/**
+ * Accuracy class: substeps of 0.25 ms or less; the default.
+ */
+#define VM_CLASS_STANDARD 0
+
+/**
+ * Accuracy class: one substep a tick, unless the muscle rings too fast for that.
+ */
+#define VM_CLASS_ECONOMY 1
+
+/**
+ * Accuracy class: substeps of 0.1 ms or less.
+ */
+#define VM_CLASS_FINE 2
 
 /**
  * Bytes of VmError's field, including the final 0.
@@ -361,6 +376,10 @@ typedef struct {
    * Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
    */
   double recruitment_saturation;
+  /**
+   * How accurate it is computed: VM_CLASS_STANDARD (0), VM_CLASS_ECONOMY or VM_CLASS_FINE.
+   */
+  uint32_t accuracy_class;
   /**
    * Coefficients shared by the fibre types.
    */
