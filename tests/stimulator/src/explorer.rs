@@ -14,7 +14,7 @@ thread_local! {
     static TRAIL: RefCell<Trail> = RefCell::default();
 }
 
-/// A choice among `count`, another one in each run.
+/// A choice among `options`, another one in each run.
 pub fn choose(options: u8) -> u8 {
     TRAIL.with_borrow_mut(|trail| {
         if trail.next == trail.choices.len() {
