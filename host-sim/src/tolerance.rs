@@ -46,8 +46,8 @@ fn promises(class: Class) -> [f64; 3] {
     match class {
         Class::Economy => [5.0, 1.0, 0.5],
         Class::Standard => [1.0, 0.2, 0.1],
-        // 0.2 was asked for where the muscle rings: more substeps leave 0.22, for the length at which
-        // gains are taken is predicted before the jerk.
+        // 0.2 was asked for where the muscle rings: more substeps leave 0.22, for the length at
+        // which gains are taken is predicted before the jerk.
         Class::Fine => [0.25, 0.2, 0.1],
     }
 }

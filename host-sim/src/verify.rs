@@ -98,8 +98,8 @@ pub fn verify() -> Result<Report, RunError> {
     verify_class(Class::Standard)
 }
 
-/// Runs every comparison in an accuracy class. Only the standard class has tolerances row by row; the
-/// others are held to what they promise.
+/// Runs every comparison in an accuracy class. Only the standard class has tolerances row by row;
+/// the others are held to what they promise.
 pub fn verify_class(class: Class) -> Result<Report, RunError> {
     let scenarios = scenario::all();
     let table = (class == Class::Standard).then(tolerance::table);

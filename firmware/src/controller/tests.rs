@@ -1,8 +1,9 @@
-//! What the pulse timer and the link have said of themselves is seen by the next tick, and not forgotten before.
+//! What the pulse timer and the link have said of themselves is seen by the next tick, and not
+//! forgotten before.
 
 use super::Controller;
-use crate::gate::Gate;
 use crate::limits::Limits;
+use crate::permission::Permission;
 use crate::plan::PlanQueue;
 use crate::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State};
 use crate::stimulus::Scale;
@@ -22,39 +23,40 @@ const OBSERVED: Observed = Observed {
 };
 
 /// Armed, and the flags that the pulse timer raises.
-fn armed() -> (Controller<'static>, &'static Gate) {
+fn armed() -> (Controller<'static>, &'static Permission) {
     let queue: &'static mut PlanQueue = Box::leak(Box::default());
-    let gate: &'static Gate = Box::leak(Box::default());
+    let permission: &'static Permission = Box::leak(Box::default());
     let (give, _) = queue.split();
     let limits = Limits::SURFACE.within_scale(&SCALE);
-    let controller = Controller::new(limits, 1000, Fault::Boot, SCALE, give, gate);
+    let controller = Controller::new(limits, 1000, Fault::Boot, SCALE, give, permission);
     let mut controller = controller.expect("valid limits");
     assert!(!controller.tick(&OBSERVED, &Requested::NOTHING));
     controller.acknowledge(Fault::Boot).expect("its name");
     controller.arm().expect("nothing is wrong");
     assert!(controller.tick(&OBSERVED, &Requested::NOTHING));
-    (controller, gate)
+    (controller, permission)
 }
 
 #[test]
 fn what_the_pulse_timer_says_is_a_fault_of_the_next_tick() {
-    let cases: [(Fault, fn(&Gate, bool)); 3] = [
-        (Fault::Checksum, Gate::set_plan_lost),
-        (Fault::Output, Gate::set_output_failed),
-        (Fault::Deadline, Gate::set_late),
+    let cases: [(Fault, fn(&Permission, bool)); 3] = [
+        (Fault::Checksum, Permission::set_plan_lost),
+        (Fault::Output, Permission::set_output_failed),
+        (Fault::Deadline, Permission::set_late),
     ];
     for (fault, raise) in cases {
-        let (mut controller, gate) = armed();
-        raise(gate, true);
+        let (mut controller, permission) = armed();
+        raise(permission, true);
         assert!(!controller.tick(&OBSERVED, &Requested::NOTHING), "{fault:?}");
         assert_eq!(controller.state(), State::Latched(fault));
-        assert!(!gate.is_open());
-        // What was late, or a plan that was lost, is over when it has been acknowledged; an output has to answer.
+        assert!(!permission.is_open());
+        // What was late, or a plan that was lost, is over when it has been acknowledged; an output
+        // has to answer.
         controller.acknowledge(fault).expect("its name");
         assert!(!controller.tick(&OBSERVED, &Requested::NOTHING));
         if fault == Fault::Output {
             assert_eq!(controller.arm(), Err(NotArmed::StillThere(fault)));
-            raise(gate, false);
+            raise(permission, false);
             assert!(!controller.tick(&OBSERVED, &Requested::NOTHING));
         }
         assert_eq!(controller.arm(), Ok(()), "{fault:?}");
@@ -75,9 +77,9 @@ fn a_scale_that_lost_a_bit_is_no_scale() {
 
 #[test]
 fn the_host_is_heard_once() {
-    let (controller, gate) = armed();
+    let (controller, permission) = armed();
     assert!(!controller.take_heard());
-    gate.set_heard();
+    permission.set_heard();
     assert!(controller.take_heard());
     assert!(!controller.take_heard());
 }

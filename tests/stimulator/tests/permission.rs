@@ -62,7 +62,8 @@ fn current_is_off_two_ticks_after_the_last_tick() {
     }
 }
 
-/// A tick that comes when the next step would outlast the last permission to the µs is not late; a µs after that it is.
+/// A tick that comes when the next step would outlast the last permission to the µs is not late; a
+/// µs after that it is.
 #[test]
 fn a_permission_holds_to_the_microsecond() {
     for tick_us in TICKS_US {
