@@ -133,9 +133,13 @@ impl Axis {
         if least > most {
             return Self { least: 0.0, most: 1.0, start, end };
         }
-        // A constant needs some height.
-        let height = (most - least).max(1e-6 * most.abs()).max(1e-9);
-        Self { least, most: least + height, start, end }
+        // What differs by rounding alone is a constant: a tenth of it around it, or one unit around 0,
+        // so that its labels are short.
+        if most - least <= 1e-6 * most.abs() {
+            let around = if most == 0.0 { 1.0 } else { 0.1 * most.abs() };
+            return Self { least: least - around, most: most + around, start, end };
+        }
+        Self { least, most, start, end }
     }
 
     /// The same with a margin of 5 % at both ends.
@@ -336,6 +340,18 @@ mod tests {
         assert!(thin.contains(&(4321.0, 5.0)) && thin.contains(&(7654.0, -3.0)));
         assert!(thin.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         assert_eq!(thinned(&points[..100]), points[..100]);
+    }
+
+    /// The path of a scenario that holds it: 16.00000 and 16.00001 would say nothing.
+    #[test]
+    fn a_constant_has_short_labels_around_it() {
+        for (value, count) in [(16.0, 3.0), (16.000_000_1, 6.0), (0.0, 3.0), (-0.25, 3.0)] {
+            let axis = Axis::padded([value, value].into_iter(), 100.0, 0.0);
+            let (ticks, digits) = axis.ticks(count);
+            assert!(digits <= 2, "{value}: {digits} digits");
+            assert!(!ticks.is_empty(), "{value}: no label");
+            assert!((axis.place(value) - 50.0).abs() < 1e-3, "{value}");
+        }
     }
 
     #[test]
