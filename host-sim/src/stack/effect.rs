@@ -63,7 +63,8 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     match (instruction.mnemonic(), instruction.class) {
         ("tbb", _) => Goes::Table(1),
         ("tbh", _) => Goes::Table(2),
-        ("udf" | "udf.w", _) => Goes::Nowhere,
+        // The disassembler's name of UDF #254, which stands where the compiler says nothing comes.
+        ("udf" | "udf.w" | "trap", _) => Goes::Nowhere,
         ("b" | "b.w", _) => by(Goes::To),
         (_, Class::Branch) => by(Goes::ToOrOn),
         (_, Class::Call) => instruction.target().map_or(Goes::IndirectCall, Goes::Call),

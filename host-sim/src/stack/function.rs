@@ -304,6 +304,15 @@ mod tests {
     }
 
     #[test]
+    fn nothing_comes_after_an_undefined_instruction() {
+        // cbz r0, over the next; bx lr; udf #254, and the same with udf #0
+        for undefined in [0xDEFE, 0xDE00] {
+            let walked = walked(&[("f", &[0xB100, 0x4770, undefined])]);
+            assert_eq!((walked.unknown.len(), walked.returns), (0, true), "{undefined:x}");
+        }
+    }
+
+    #[test]
     fn all_that_a_table_leads_to_is_walked() {
         // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7,
         // lr}; pop {r4-r7, pc}
