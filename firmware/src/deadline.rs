@@ -48,3 +48,27 @@ impl Deadline {
         self.late
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Deadline;
+
+    #[test]
+    fn a_tick_is_late_if_it_begins_after_a_tenth_or_ends_after_the_next() {
+        // 8 counts per µs, 1 ms.
+        let mut deadline = Deadline::new(1_000, 8);
+        assert_eq!((deadline.longest_us(), deadline.late()), (0, 0));
+        for (begins, ends, next_is_due, in_time, longest_us, late) in [
+            (0, 800, false, true, 100, 0),
+            (800, 1_601, false, true, 201, 0),
+            (801, 900, false, false, 201, 1),
+            (0, 7_999, false, true, 1_000, 1),
+            (0, 10, true, false, u32::MAX, 2),
+            (0, 800, false, true, u32::MAX, 2),
+        ] {
+            deadline.begin(begins);
+            assert_eq!(deadline.end(ends, next_is_due), in_time, "{begins} to {ends}");
+            assert_eq!((deadline.longest_us(), deadline.late()), (longest_us, late));
+        }
+    }
+}

@@ -39,6 +39,8 @@ enum Fails {
     WithFlag,
     /// It is said to be done, and is not.
     Silently,
+    /// The call says so, without a flag.
+    WithoutFlag,
     /// It never ends.
     Never,
 }
@@ -73,6 +75,9 @@ impl Part {
         }
         if fails == Fails::Never {
             self.busy_until = self.counts.get().wrapping_add(0x7fff_ffff);
+        }
+        if fails == Fails::WithoutFlag {
+            return false;
         }
         if fails == Fails::Not {
             operation(&mut self.kept);
@@ -156,6 +161,8 @@ fn a_flag_of_an_earlier_error_does_not_fail_what_comes_after_it() {
     flash.controller().fails = [Fails::WithFlag].into();
     assert_eq!(flash.write(32, &[4]), Err(FlashError::Failed));
     assert_eq!(flash.write(32, &[4]), Ok(()));
+    flash.controller().fails = [Fails::WithoutFlag].into();
+    assert_eq!(flash.write(33, &[5]), Err(FlashError::Failed));
 }
 
 #[test]
