@@ -1,4 +1,4 @@
-//! What a tick costs on a Cortex-M4F, in cycles, from the instructions that really execute.
+//! What a tick costs on a Cortex-M4F, M3 or M0+, in cycles, from the instructions that execute.
 //!
 //! QEMU runs the image and a plugin streams the addresses of executed instructions; each is decoded
 //! once, and a timing model of the core adds up cycles. Flash wait states are not in it.
@@ -9,6 +9,7 @@ mod boot;
 mod breakdown;
 mod budgets;
 mod case;
+mod core;
 mod estimator;
 mod follow;
 mod image;
@@ -24,6 +25,7 @@ mod unit_costs;
 pub use boot::{Argument, ArgumentError, BootError};
 pub use breakdown::{Part, by_class, by_function, hottest};
 pub use budgets::MARGIN;
+pub use core::Core;
 pub use estimator::Cost;
 pub(crate) use estimator::Decoded;
 pub(crate) use image::Image;

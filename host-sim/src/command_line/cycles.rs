@@ -2,7 +2,7 @@
 
 use super::{complain, print};
 use crate::cycles::{
-    self, Argument, CLOCKS, Cost, MARGIN, Part, Profile, Row, Spread, Tracer, UnitCost,
+    self, Argument, CLOCKS, Core, Cost, MARGIN, Part, Profile, Row, Spread, Tracer, UnitCost,
 };
 use crate::engine::Class;
 use crate::readme;
@@ -32,6 +32,9 @@ pub struct CyclesArgs {
     /// Profile one case by function, file and class of instruction.
     #[arg(long, conflicts_with = "elf")]
     case: Option<String>,
+    /// The core that the case runs on.
+    #[arg(long, requires = "case", value_enum, default_value_t)]
+    core: Core,
     /// Only this tick of the case, counted from 0.
     #[arg(long, requires = "case")]
     tick: Option<usize>,
@@ -58,9 +61,10 @@ pub struct CyclesArgs {
     /// Number of most expensive addresses to list.
     #[arg(long, num_args = 0..=1, default_missing_value = "40", value_name = "COUNT")]
     listing: Option<usize>,
-    /// Accuracy class of the model. Budgets and documents are of the standard class.
-    #[arg(long, value_enum, default_value_t, conflicts_with_all = ["check", "write", "elf"])]
-    class: Class,
+    /// Accuracy class of the model. Default: that of budgets and documents, the standard class, and
+    /// the economy class on a Cortex-M0+.
+    #[arg(long, value_enum, conflicts_with_all = ["check", "write", "elf"])]
+    class: Option<Class>,
     /// Source of the executed addresses.
     #[arg(long, value_enum, default_value_t = Tracer::Auto)]
     tracer: Tracer,
@@ -75,7 +79,13 @@ fn share(text: &str) -> Result<f64, String> {
 /// Runs the command; false if a check failed.
 pub fn run(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     let profile = match (&args.case, &args.elf, &args.symbol) {
-        (Some(case), ..) => cycles::of_case(case, args.tick, args.tracer, args.class)?,
+        (Some(case), ..) => cycles::of_case(
+            args.core,
+            case,
+            args.tick,
+            args.tracer,
+            args.class.unwrap_or(args.core.class()),
+        )?,
         (None, Some(elf), Some(symbol)) => {
             let timeout = Duration::from_secs(args.timeout.into());
             let entry = args.entry.as_deref();
@@ -152,6 +162,7 @@ fn new_table(header: &[&str], right_from: usize) -> Table {
 
 fn table(rows: &[Row]) -> Table {
     let header = [
+        "core",
         "case",
         "ticks",
         "instr max",
@@ -172,10 +183,11 @@ fn table(rows: &[Row]) -> Table {
         "stack B",
         "budget",
     ];
-    let mut table = new_table(&header, 1);
+    let mut table = new_table(&header, 2);
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows {
         table.add_row([
+            row.target.name().to_owned(),
             row.case.clone(),
             row.ticks.to_string(),
             row.instructions_max.to_string(),
@@ -209,9 +221,10 @@ fn muscles(rows: &[Row], share: f64) -> String {
     let mut table = new_table(&header, 1);
     for row in rows.iter().filter(|row| row.mode != "-") {
         let counts = CLOCKS.map(|clock| row.muscles(clock, share).to_string());
-        table.add_row([vec![row.case.clone()], counts.to_vec()].concat());
+        let name = format!("{} on {}", row.case, row.target.name());
+        table.add_row([vec![name], counts.to_vec()].concat());
     }
-    format!("\n{table}\n(pess max x {MARGIN}, on a Cortex-M4F that waits for no memory)")
+    format!("\n{table}\n(pess max x {MARGIN}, on a core that waits for no memory)")
 }
 
 fn calls(profile: &Profile) -> String {

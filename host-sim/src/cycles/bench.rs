@@ -1,6 +1,7 @@
 //! The bench: an image that drives cases through inputs, and what each of their ticks costs.
 
 use super::case::{Case, Run};
+use super::core::Core;
 use super::follow::{Count, FollowError, Followed, follow};
 use super::image::Image;
 use super::trace::{Program, Tracer};
@@ -26,9 +27,10 @@ pub enum BenchError {
     Inputs(#[from] std::io::Error),
 }
 
-/// Builds the bench with the inputs of runs, and times every tick of the cases; returns the image,
-/// too.
+/// Builds the bench for a core with the inputs of runs, and times every tick of the cases; returns
+/// the image, too.
 pub fn measure(
+    core: Core,
     cases: &[Case],
     runs: &[Run],
     tracer: Tracer,
@@ -39,13 +41,13 @@ pub fn measure(
     let inputs = folder.path().join("inputs.bin");
     std::fs::write(&inputs, encode(runs))?;
     let path = target::build(
-        target::STM32F405,
+        core.board(),
         "bench",
         &[("VM_BENCH_INPUTS", &inputs), ("VM_BENCH_CLASS", Path::new(class.name()))],
     )?;
     let image = Image::read(&path).map_err(FollowError::from)?;
     let functions: Vec<&str> = cases.iter().map(|case| case.function).collect();
-    let program = Program::on_board(&path);
+    let program = Program::on_board(&path, core);
     let followed = follow(&image, &program, tracer, &functions, count)?;
     if followed.iter().any(|followed| followed.stopped) {
         return Err(BenchError::Endless(program.timeout.as_secs()));

@@ -62,6 +62,8 @@ fn sums(executions: &Executions, name: impl Fn(&Instruction) -> String) -> Vec<P
 fn class_name(class: Class) -> &'static str {
     match class {
         Class::Integer => "integer",
+        Class::LongMultiply => "long multiply",
+        Class::LongMultiplyAccumulate => "long multiply-accumulate",
         Class::MultiplyAccumulate => "integer multiply-accumulate",
         Class::IntegerDivide => "integer divide",
         Class::Load => "load",

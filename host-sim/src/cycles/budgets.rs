@@ -1,6 +1,7 @@
 //! The budgets that costs are held to.
 
 use super::case::{Case, Subject};
+use super::core::Core;
 use super::report::{Row, Share};
 use crate::engine::Arithmetic;
 use serde::Deserialize;
@@ -20,8 +21,8 @@ pub(super) struct Budgets {
     maximum_over_mean: f64,
     /// Least that the literal port in `f32` takes, relative to the model.
     literal_over_model: f64,
-    /// Of each case of the model.
-    model: BTreeMap<String, Budget>,
+    /// Of each core, of each case of the model.
+    core: BTreeMap<Core, BTreeMap<String, Budget>>,
 }
 
 /// What a case may cost.
@@ -53,7 +54,7 @@ impl Budgets {
 
     /// Holds a case's row to what it may cost.
     pub fn hold(&self, case: &Case, row: &mut Row) {
-        let budget = self.model.get(case.name);
+        let budget = self.core.get(&row.target).and_then(|cases| cases.get(case.name));
         let problems = match (case.subject, budget) {
             (Subject::Model(..), Some(budget)) => self.problems_of_model(row, budget),
             (Subject::Model(..), None) => vec!["no budget".to_owned()],
@@ -122,7 +123,7 @@ impl Budgets {
 #[cfg(test)]
 mod tests {
     use super::super::case::CASES;
-    use super::super::report::tests::a_row;
+    use super::super::report::{cases_on, tests::a_row};
     use super::*;
 
     fn budgets() -> Budgets {
@@ -133,8 +134,9 @@ mod tests {
             both_modes_bytes: 9000,
             stack_bytes: 200,
         };
-        let model = [(CASES[0].name.to_owned(), budget)].into();
-        Budgets { maximum_over_mean: 1.12, literal_over_model: 100.0, model }
+        let cases = [(CASES[0].name.to_owned(), budget)].into();
+        let core = [(Core::CortexM4F, cases)].into();
+        Budgets { maximum_over_mean: 1.12, literal_over_model: 100.0, core }
     }
 
     /// What is wrong with a row, once the first case's budget is changed.
@@ -149,7 +151,9 @@ mod tests {
     #[test]
     fn a_budget_is_neither_exceeded_nor_stale() {
         let with = |change: fn(&mut Budget)| {
-            problem(&CASES[0], |budgets, _| budgets.model.values_mut().for_each(change))
+            problem(&CASES[0], |budgets, _| {
+                budgets.core.values_mut().flat_map(BTreeMap::values_mut).for_each(change);
+            })
         };
         assert_eq!(with(|_| ()), "");
         assert_eq!(with(|b| b.cycles = 1049), "cycles 1050 > budget 1049");
@@ -164,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_model_without_budget_with_an_expensive_tick_or_with_parts_missing_does_not_pass() {
-        let none = problem(&CASES[0], |budgets, _| budgets.model.clear());
+        let none = problem(&CASES[0], |budgets, _| budgets.core.clear());
         assert_eq!(none, "no budget");
         let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
         assert_eq!(spread, "maximum over mean 1.111 > 1.1");
@@ -187,10 +191,13 @@ mod tests {
     #[test]
     fn every_case_of_the_model_has_a_budget() {
         let budgets = Budgets::read().expect("budgets");
-        let names: Vec<&str> = budgets.model.keys().map(String::as_str).collect();
-        let cases = CASES.iter().filter(|case| case.is_model());
-        let mut expected: Vec<&str> = cases.map(|case| case.name).collect();
-        expected.sort_unstable();
-        assert_eq!(names, expected);
+        for core in Core::ALL {
+            let names: Vec<&str> = budgets.core[&core].keys().map(String::as_str).collect();
+            let cases = cases_on(core);
+            let mut expected: Vec<&str> =
+                cases.iter().filter(|case| case.is_model()).map(|case| case.name).collect();
+            expected.sort_unstable();
+            assert_eq!(names, expected, "{}", core.name());
+        }
     }
 }

@@ -242,6 +242,13 @@ pub fn runs() -> Vec<Run> {
         .collect()
 }
 
+/// The runs that some of the cases are driven through.
+pub fn runs_of(cases: &[Case]) -> Vec<Run> {
+    let wanted = cases.iter().fold(0, |mask, case| mask | case.bit());
+    let all = runs().into_iter().map(|run| Run { mask: run.mask & wanted, ..run });
+    all.filter(|run| run.mask != 0).collect()
+}
+
 /// The literal port's forces on a scenario, N; its muscle is the paper's.
 fn literal_forces<R: Real + Into<f64>>(mode: Mode, steps: u32, scenario: &Scenario) -> Vec<f64> {
     let inputs = &scenario.trace.inputs;

@@ -4,6 +4,7 @@
 //! and on whether its last branch is taken. Each such passage is timed instruction by instruction
 //! when it is first met, and looked up from then on.
 
+use super::core::Core;
 use super::image::Image;
 use super::instruction::{Decoder, Instruction};
 use super::timing::{Pipeline, Setting};
@@ -43,24 +44,27 @@ impl Cost {
 /// The instructions of an image, each decoded when it is first met.
 pub struct Decoded<'a> {
     image: &'a Image,
+    core: Core,
     decoder: Decoder,
     instructions: FxHashMap<u32, Instruction>,
 }
 
 impl<'a> Decoded<'a> {
-    /// Nothing decoded yet.
-    pub fn new(image: &'a Image) -> Result<Self, capstone::Error> {
-        Ok(Self { image, decoder: Decoder::new()?, instructions: FxHashMap::default() })
+    /// Nothing decoded yet of an image for a core.
+    pub fn new(image: &'a Image, core: Core) -> Result<Self, capstone::Error> {
+        Ok(Self { image, core, decoder: Decoder::new()?, instructions: FxHashMap::default() })
     }
 
-    /// The instruction at an address, or the address if there is none.
+    /// The instruction at an address, or the address if there is none that the core has.
     pub fn at(&mut self, address: u32) -> Result<&Instruction, u32> {
         use std::collections::hash_map::Entry;
         match self.instructions.entry(address) {
             Entry::Occupied(known) => Ok(known.into_mut()),
             Entry::Vacant(new) => {
                 let code = self.image.code_at(address);
-                Ok(new.insert(self.decoder.decode(code, address).ok_or(address)?))
+                let decoded = self.decoder.decode(code, address);
+                let one = decoded.filter(|one| self.core.executes(one.class)).ok_or(address)?;
+                Ok(new.insert(one))
             }
         }
     }
@@ -203,6 +207,7 @@ fn costs(
     pipelines: &mut Pipelines,
     decoded: &mut Decoded<'_>,
 ) -> Result<Vec<(Instruction, Cost)>, u32> {
+    let core = decoded.core;
     let instructions = decoded.block(passage.block)?;
     Ok(instructions
         .into_iter()
@@ -211,7 +216,7 @@ fn costs(
             let mut cycles = [0; 3];
             for ((pipeline, setting), cycles) in pipelines.iter_mut().zip(SETTINGS).zip(&mut cycles)
             {
-                *cycles = pipeline.execute(setting, &instruction, taken);
+                *cycles = pipeline.execute(core, setting, &instruction, taken);
             }
             (instruction, Cost { instructions: 1, cycles })
         })

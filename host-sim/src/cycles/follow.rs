@@ -1,5 +1,6 @@
 //! Follows the calls of some functions through the execution of an image.
 
+use super::core::Core;
 use super::estimator::{Cost, Decoded, Estimator};
 use super::image::{Image, ImageError};
 use super::instruction::Instruction;
@@ -20,8 +21,13 @@ pub enum FollowError {
     #[error("the disassembler: {0}")]
     Decoder(#[from] capstone::Error),
     /// An instruction could not be decoded.
-    #[error("no instruction of a Cortex-M4F at {0:#010x}")]
-    Decode(u32),
+    #[error("no instruction of a {} at {address:#010x}", core.name())]
+    Decode {
+        /// Where.
+        address: u32,
+        /// The core.
+        core: Core,
+    },
     /// A function was not called.
     #[error("{0} was not called")]
     NotCalled(String),
@@ -136,7 +142,7 @@ pub fn follow(
         .map(|name| Ok(image.function(name)?.address))
         .collect::<Result<_, ImageError>>()?;
     let mut follower = Follower {
-        decoded: Decoded::new(image)?,
+        decoded: Decoded::new(image, program.core)?,
         entries,
         count,
         estimators: functions.iter().map(|_| Estimator::default()).collect(),
@@ -155,8 +161,9 @@ pub fn follow(
         Err(TraceError::Endless { program, seconds }) => Some((program, seconds)),
         Err(error) => return Err(error.into()),
     };
+    let no_instruction = |address| FollowError::Decode { address, core: program.core };
     if let Some(address) = undecodable {
-        return Err(FollowError::Decode(address));
+        return Err(no_instruction(address));
     }
     let Follower { mut decoded, estimators, calls, call, .. } = follower;
     let mut all = Vec::new();
@@ -184,7 +191,7 @@ pub fn follow(
             stopped: stopped.is_some(),
             stack_bytes: estimator.stack_bytes(),
             code,
-            executions: estimator.executions(&mut decoded).map_err(FollowError::Decode)?,
+            executions: estimator.executions(&mut decoded).map_err(no_instruction)?,
         });
     }
     Ok(all)

@@ -7,8 +7,12 @@ use capstone::prelude::*;
 /// What kind of work an instruction does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Class {
-    /// Integer arithmetic, logic, moves, multiplications: one cycle.
+    /// Integer arithmetic, logic, moves, multiplications of one word.
     Integer,
+    /// UMULL and SMULL.
+    LongMultiply,
+    /// UMLAL, SMLAL and UMAAL.
+    LongMultiplyAccumulate,
     /// MLA and MLS.
     MultiplyAccumulate,
     /// SDIV and UDIV.
@@ -108,7 +112,7 @@ impl Instruction {
 pub struct Decoder(Capstone);
 
 impl Decoder {
-    /// A decoder for the Cortex-M4F.
+    /// A decoder for the instructions of a Cortex-M4F, those of an M3 and an M0+ among them.
     pub fn new() -> Result<Self, capstone::Error> {
         let capstone = Capstone::new()
             .arm()
@@ -244,6 +248,8 @@ fn classify(mnemonic: &str, operands: &str) -> Class {
         () if starts(&["str"]) => Class::Store,
         () if starts(&["sdiv", "udiv"]) => Class::IntegerDivide,
         () if name == "mla" || name == "mls" => Class::MultiplyAccumulate,
+        () if starts(&["umull", "smull"]) => Class::LongMultiply,
+        () if starts(&["umlal", "smlal", "umaal"]) => Class::LongMultiplyAccumulate,
         () if starts(&["blx", "bx", "tbb", "tbh"]) => Class::BranchToRegister,
         () if name == "bl" => Class::Call,
         () if starts(&["cbz", "cbnz"]) => Class::Branch,
@@ -309,7 +315,8 @@ mod tests {
             (&[0xE9D1, 0x0200], "ldrd r0, r2, [r1]", Class::LoadMany(2)),
             (&[0xFBB0, 0xF0F1], "udiv r0, r0, r1", Class::IntegerDivide),
             (&[0xFB00, 0x2001], "mla r0, r0, r1, r2", Class::MultiplyAccumulate),
-            (&[0xFBC2, 0x0103], "smlal r0, r1, r2, r3", Class::Integer),
+            (&[0xFBC2, 0x0103], "smlal r0, r1, r2, r3", Class::LongMultiplyAccumulate),
+            (&[0xFBA2, 0x0103], "umull r0, r1, r2, r3", Class::LongMultiply),
             (&[0xD1FE], "bne #0x8000000", Class::Branch),
             (&[0xF7FF, 0xFFFE], "bl #0x8000000", Class::Call),
             (&[0x4770], "bx lr", Class::BranchToRegister),

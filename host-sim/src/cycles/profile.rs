@@ -5,6 +5,7 @@ use super::bench::{BenchError, measure};
 use super::boot::{self, Argument, BootError};
 use super::breakdown::{Part, by_class, by_file, by_function};
 use super::case::{self, CASES, Case, Run};
+use super::core::Core;
 use super::estimator::Cost;
 use super::follow::{Count, FollowError, Followed, follow};
 use super::image::{Image, ImageError};
@@ -86,17 +87,17 @@ impl Profile {
     }
 }
 
-/// A case of the bench: all its ticks, or one of them, which is reached as fast as may be.
+/// A case of the bench on a core: all its ticks, or one of them, which is reached as fast as may be.
 pub fn of_case(
+    core: Core,
     name: &str,
     tick: Option<usize>,
     tracer: Tracer,
     class: Class,
 ) -> Result<Profile, ProfileError> {
     let case = Case::named(name).ok_or_else(|| ProfileError::NoCase(name.to_owned()))?;
-    let mut runs: Vec<Run> =
-        case::runs().into_iter().filter(|run| run.mask & case.bit() != 0).collect();
-    let mut title = format!("{name}, all ticks");
+    let mut runs = case::runs_of(&[*case]);
+    let mut title = format!("{name} on a {}, all ticks", core.name());
     let mut count = Count::All;
     if let Some(tick) = tick {
         let (run, row) = locate(&runs, tick).ok_or_else(|| {
@@ -108,15 +109,16 @@ pub fn of_case(
         let Input { activation, path_length, stimulation_frequency } =
             run.scenario.trace.inputs[row];
         title = format!(
-            "{name}, tick {tick}: row {row} of {} (activation {activation}, path {path_length} m, \
+            "{name} on a {}, tick {tick}: row {row} of {} (activation {activation}, path {path_length} m, \
              {stimulation_frequency} pps)",
+            core.name(),
             run.scenario.name
         );
         // Rows before it are executed, to get to its state, and not counted.
         count = Count::At(row - 1);
         runs = vec![run];
     }
-    let (image, followed) = measure(&[*case], &runs, tracer, count, class)?;
+    let (image, followed) = measure(core, &[*case], &runs, tracer, count, class)?;
     let Some(mut followed) = followed.into_iter().next() else {
         return Err(FollowError::NotCalled(case.function.to_owned()).into());
     };
@@ -151,7 +153,8 @@ pub fn of_image(
     let mut image = Image::read(path)?;
     let entry = image.function(function)?.clone();
     let folder = temporary_folder().map_err(BootError::Write)?;
-    let mut program = Program { image: path, machine, arguments: Vec::new(), timeout };
+    let core = Core::CortexM4F;
+    let mut program = Program { image: path, machine, core, arguments: Vec::new(), timeout };
     if let Some(arguments) = arguments {
         program.arguments = boot::loader_arguments(path, entry.address, arguments, folder.path())?;
         let (address, code) = boot::code();

@@ -1,5 +1,6 @@
 //! What a function can execute: its own instructions and those of all that it calls.
 
+use super::core::Core;
 use super::estimator::Decoded;
 use super::follow::FollowError;
 use super::image::Image;
@@ -21,7 +22,7 @@ pub struct Reached {
 /// Follows every branch and call from a function of an image.
 pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
     let image = Image::read(path)?;
-    let mut decoded = Decoded::new(&image)?;
+    let mut decoded = Decoded::new(&image, Core::CortexM4F)?;
     let mut reached = Reached::default();
     let mut seen = BTreeSet::new();
     let mut ahead = vec![image.function(function)?.address];
@@ -29,7 +30,9 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
         if !seen.insert(address) {
             continue;
         }
-        let instruction = decoded.at(address).map_err(FollowError::Decode)?;
+        let instruction = decoded
+            .at(address)
+            .map_err(|address| FollowError::Decode { address, core: Core::CortexM4F })?;
         if let Some(function) = image.function_at(address) {
             reached.functions.insert(function.name.clone());
         }

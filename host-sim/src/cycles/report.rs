@@ -4,6 +4,7 @@ use super::bench::{BenchError, measure};
 use super::breakdown::{Part, by_class, by_file};
 use super::budgets::{Budgets, MARGIN};
 use super::case::{self, CASES, Case, Subject};
+use super::core::Core;
 use super::estimator::Cost;
 use super::follow::{Count, Followed};
 use super::image::{Image, ImageError};
@@ -79,7 +80,7 @@ pub struct Row {
     /// What it is computed in.
     pub arithmetic: String,
     /// The core.
-    pub target: String,
+    pub target: Core,
     /// Accuracy class of the model.
     #[serde(default)]
     pub class: String,
@@ -179,30 +180,58 @@ pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
     Ok(Case::named(case).map(Case::state_bytes).zip(most))
 }
 
-/// Measures all cases and holds the model's to their budgets.
-pub fn report(tracer: Tracer, class: Class) -> Result<Vec<Row>, ReportError> {
+/// What is measured on a core: everything on the M4F, on the others the model in fixed point.
+pub(super) fn cases_on(core: Core) -> Vec<Case> {
+    let wanted = |case: &&Case| {
+        core == Core::CortexM4F || case.is_model() && case.arithmetic() == Arithmetic::Fixed
+    };
+    CASES.iter().filter(wanted).copied().collect()
+}
+
+/// Measures all cases on all cores, in an accuracy class, or in that of each core; the model's are
+/// held to their budgets where the class is the core's.
+pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportError> {
     let budgets: Budgets = Budgets::read()?;
     let scenarios = case::scenarios();
-    let (image, followed) = measure(&CASES, &case::runs(), tracer, Count::All, class)?;
-    let mut rows = Vec::new();
-    for (case, followed) in CASES.iter().zip(&followed) {
-        let error = case.largest_error(&scenarios, class)?;
-        rows.push(Row { class: class.name().to_owned(), ..row(case, followed, error) });
-    }
-    for (index, case) in CASES.iter().enumerate() {
-        if case.is_model() {
-            rows[index].both_modes_bytes = Some(both_modes_bytes(&image, case, &followed));
-            (rows[index].files, rows[index].classes) = shares(&image, &followed[index])?;
-        } else {
-            rows[index].ratio = cycles_of_model(&rows, case.mode())
-                .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
+    let mut all = Vec::new();
+    for core in Core::ALL {
+        let class = class.unwrap_or(core.class());
+        let cases = cases_on(core);
+        let runs = case::runs_of(&cases);
+        let (image, followed) = measure(core, &cases, &runs, tracer, Count::All, class)?;
+        let mut rows = Vec::new();
+        for (case, followed) in cases.iter().zip(&followed) {
+            let error = case.largest_error(&scenarios, class)?;
+            rows.push(row(core, class, case, followed, error));
         }
-        // Budgets are of the standard class.
-        if class == Class::Standard {
-            budgets.hold(case, &mut rows[index]);
+        for (index, case) in cases.iter().enumerate() {
+            if case.is_model() {
+                let bytes = both_modes_bytes(&image, case, &cases, &followed);
+                rows[index].both_modes_bytes = Some(bytes);
+                (rows[index].files, rows[index].classes) = shares(&image, &followed[index])?;
+            } else {
+                rows[index].ratio = cycles_of_model(&rows, case.mode())
+                    .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
+            }
+            if class == core.class() {
+                budgets.hold(case, &mut rows[index]);
+            }
         }
+        all.extend(rows);
     }
-    Ok(rows)
+    Ok(all)
+}
+
+/// The command that shows one tick of a case.
+fn replay(core: Core, class: Class, case: &Case, tick: usize) -> String {
+    let mut on = String::new();
+    if core != Core::default() {
+        on += &format!(" --core {}", core.name());
+    }
+    if class != Class::default() {
+        on += &format!(" --class {}", class.name());
+    }
+    format!("cargo vm cycles{on} --case {} --tick {tick}", case.name)
 }
 
 /// What a tick takes, by file and by class of instruction.
@@ -214,8 +243,8 @@ fn shares(image: &Image, followed: &Followed) -> Result<(Vec<Share>, Vec<Share>)
 }
 
 /// Bytes of code and tables of the model in a case's arithmetic, all its modes that are measured.
-fn both_modes_bytes(image: &Image, case: &Case, followed: &[Followed]) -> u32 {
-    let alike = CASES
+fn both_modes_bytes(image: &Image, case: &Case, cases: &[Case], followed: &[Followed]) -> u32 {
+    let alike = cases
         .iter()
         .zip(followed)
         .filter(|(other, _)| other.is_model() && other.arithmetic() == case.arithmetic());
@@ -231,7 +260,7 @@ fn cycles_of_model(rows: &[Row], mode: Option<Mode>) -> Option<u64> {
     Some(rows.get(index)?.cycles_pess_max)
 }
 
-fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
+fn row(core: Core, class: Class, case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
     let calls = &followed.calls;
     let [optimistic, typical, pessimistic] = [0, 1, 2].map(|setting| Spread::of(calls, setting));
     let worst = (0..calls.len()).max_by_key(|&tick| calls[tick].cycles[2]).unwrap_or(0);
@@ -239,8 +268,8 @@ fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
         case: case.name.to_owned(),
         mode: case.mode().map_or("-", engine::mode_name).to_owned(),
         arithmetic: case.arithmetic().name().to_owned(),
-        target: "cortex-m4f".to_owned(),
-        class: String::new(),
+        target: core,
+        class: class.name().to_owned(),
         ticks: calls.len(),
         instructions_max: calls.iter().map(|cost| cost.instructions).max().unwrap_or(0),
         cycles_opt_mean: optimistic.mean,
@@ -253,7 +282,7 @@ fn row(case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
         cycles_pess_p99: pessimistic.p99,
         cycles_pess_max: pessimistic.max,
         worst_tick: worst,
-        replay: format!("cargo vm cycles --case {} --tick {worst}", case.name),
+        replay: replay(core, class, case, worst),
         state_bytes: case.state_bytes(),
         code_bytes: followed.code_bytes(),
         both_modes_bytes: None,
@@ -282,7 +311,7 @@ pub(super) mod tests {
             code: [(0x100, 3000), (0x2000, 2000)].into(),
             executions: Vec::new(),
         };
-        let row = row(case, &followed, Some(0.1));
+        let row = row(Core::CortexM4F, Class::Standard, case, &followed, Some(0.1));
         let share = |name: &str, cycles| Share { name: name.to_owned(), instructions: 1.0, cycles };
         Row {
             both_modes_bytes: Some(9000),

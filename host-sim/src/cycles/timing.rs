@@ -1,9 +1,15 @@
-//! The timing model of the Cortex-M4F: cycles of each instruction in the order of execution.
+//! The timing models: cycles of each instruction in the order of execution.
 //!
-//! Sources: Arm, Cortex-M4 Technical Reference Manual r0p1, tables 3-1 (instruction set), 7-1
-//! (floating point) and section 3.3.2 (load and store timing). The settings span what the
-//! manual leaves open: P, the cycles of refilling the pipeline, is 1 to 3 there.
+//! Cortex-M4F: Arm, Cortex-M4 Technical Reference Manual r0p1, tables 3-1 (instruction set), 7-1
+//! (floating point) and section 3.3.2 (load and store timing). Cortex-M3: Arm, Cortex-M3 Technical
+//! Reference Manual r2p1 (DDI 0337I), table 3-1; all but long multiplication takes what it takes on
+//! an M4, and what the M4 was measured to wait for is assumed of the M3. The settings span what the
+//! manuals leave open: P, the cycles of a pipeline refill, is 1 to 3. The Cortex-M0+ is in
+//! [`m0_plus`]; nothing is open there.
 
+mod m0_plus;
+
+use super::core::Core;
 use super::instruction::{Class, Instruction, Place, Registers};
 
 /// How what the manual leaves open is settled.
@@ -35,6 +41,26 @@ impl Setting {
             Self::Pessimistic => 12,
         }
     }
+
+    /// UMULL and SMULL: 1 cycle on an M4; 3 to 5 on an M3, by their operands.
+    fn long_multiply(self, core: Core) -> u64 {
+        match (core, self) {
+            (Core::CortexM3, Self::Optimistic) => 3,
+            (Core::CortexM3, Self::Typical) => 4,
+            (Core::CortexM3, Self::Pessimistic) => 5,
+            _ => 1,
+        }
+    }
+
+    /// UMLAL and SMLAL: 1 cycle on an M4; 4 to 7 on an M3, by their operands.
+    fn long_multiply_accumulate(self, core: Core) -> u64 {
+        match (core, self) {
+            (Core::CortexM3, Self::Optimistic) => 4,
+            (Core::CortexM3, Self::Typical) => 6,
+            (Core::CortexM3, Self::Pessimistic) => 7,
+            _ => 1,
+        }
+    }
 }
 
 /// Cycles of VDIV and VSQRT.
@@ -63,11 +89,20 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Executes an instruction and returns its cycles; `taken`: it was not the following one that
-    /// was executed after it.
-    pub fn execute(&mut self, setting: Setting, instruction: &Instruction, taken: bool) -> u64 {
+    /// Executes an instruction on a core and returns its cycles; `taken`: it was not the following
+    /// one that was executed after it.
+    pub fn execute(
+        &mut self,
+        core: Core,
+        setting: Setting,
+        instruction: &Instruction,
+        taken: bool,
+    ) -> u64 {
+        if core == Core::CortexM0Plus {
+            return m0_plus::cycles(instruction, taken);
+        }
         let wait = self.wait(setting, instruction);
-        let duration = self.duration(setting, instruction, taken);
+        let duration = self.duration(core, setting, instruction, taken);
 
         let (mut busy, mut result) = (self.divider_busy, self.divider_result);
         if instruction.class == Class::FloatDivide {
@@ -75,7 +110,13 @@ impl Pipeline {
             (busy, result) = (wait + FLOAT_DIVIDE, instruction.writes);
         }
         let divider_busy = busy.saturating_sub(wait + duration);
-        let integer = matches!(instruction.class, Class::Integer | Class::MultiplyAccumulate);
+        let integer = matches!(
+            instruction.class,
+            Class::Integer
+                | Class::MultiplyAccumulate
+                | Class::LongMultiply
+                | Class::LongMultiplyAccumulate
+        );
         let results = |of: bool| if of { instruction.writes } else { 0 };
         *self = Self {
             float_result: results(instruction.class == Class::Float),
@@ -130,12 +171,20 @@ impl Pipeline {
     }
 
     /// Cycles that an instruction takes by itself.
-    fn duration(&self, setting: Setting, instruction: &Instruction, taken: bool) -> u64 {
+    fn duration(
+        &self,
+        core: Core,
+        setting: Setting,
+        instruction: &Instruction,
+        taken: bool,
+    ) -> u64 {
         let pipelined = setting != Setting::Pessimistic
             && self.pipelined.is_some_and(|loaded| instruction.addresses & loaded == 0);
         let work = match instruction.class {
             Class::Integer | Class::Store | Class::Float | Class::FloatMove => 1,
             Class::MultiplyAccumulate | Class::FloatMoveTwo | Class::StoreByRegister => 2,
+            Class::LongMultiply => setting.long_multiply(core),
+            Class::LongMultiplyAccumulate => setting.long_multiply_accumulate(core),
             Class::IntegerDivide => setting.divide(),
             Class::Load if pipelined => 1,
             Class::Load => 2,
@@ -168,6 +217,11 @@ mod tests {
 
     /// Cycles of a straight sequence, and of a loop's pass where it ends with a branch back.
     fn cycles(setting: Setting, halfwords: &[u16], passes: u64) -> u64 {
+        cycles_on(Core::CortexM4F, setting, halfwords, passes)
+    }
+
+    /// The same on a core.
+    pub(super) fn cycles_on(core: Core, setting: Setting, halfwords: &[u16], passes: u64) -> u64 {
         let code: Vec<u8> = halfwords.iter().flat_map(|h| h.to_le_bytes()).collect();
         let decoder = Decoder::new().expect("a decoder");
         let mut instructions = Vec::new();
@@ -182,7 +236,7 @@ mod tests {
         for pass in 0..passes {
             for (index, one) in instructions.iter().enumerate() {
                 let back = index + 1 == instructions.len() && pass + 1 < passes;
-                cycles += pipeline.execute(setting, one, back);
+                cycles += pipeline.execute(core, setting, one, back);
             }
         }
         cycles
@@ -208,7 +262,7 @@ mod tests {
     fn taken(setting: Setting, halfwords: &[u16]) -> u64 {
         let code: Vec<u8> = halfwords.iter().flat_map(|h| h.to_le_bytes()).collect();
         let one = Decoder::new().expect("a decoder").decode(&code, 0x1000).expect("one");
-        Pipeline::default().execute(setting, &one, true)
+        Pipeline::default().execute(Core::CortexM4F, setting, &one, true)
     }
 
     /// `bne` back over some halfwords.
@@ -288,6 +342,25 @@ mod tests {
         let udiv = [0xFBB0, 0xF0F1];
         assert_eq!(cycles(Setting::Optimistic, &udiv, 1), 2);
         assert_eq!(cycles(Setting::Pessimistic, &udiv, 1), 12);
+    }
+
+    #[test]
+    fn long_multiplications_take_an_m3_as_long_as_its_manual_says() {
+        let (umull, smlal) = ([0xFBA2, 0x0103], [0xFBC2, 0x0103]);
+        let on = |core, setting, code: &[u16]| cycles_on(core, setting, code, 1);
+        use Setting::{Optimistic, Pessimistic, Typical};
+        for (setting, multiply, accumulate) in
+            [(Optimistic, 3, 4), (Typical, 4, 6), (Pessimistic, 5, 7)]
+        {
+            assert_eq!(on(Core::CortexM3, setting, &umull), multiply);
+            assert_eq!(on(Core::CortexM3, setting, &smlal), accumulate);
+            assert_eq!(on(Core::CortexM4F, setting, &umull), 1);
+            // MUL, a load after a load, a taken branch: as on an M4.
+            for code in [&[0xFB02_u16, 0xF003][..], &[LDR, LDR_NEXT], &[SUBS, bne_back(1)]] {
+                let of = |core| cycles_on(core, setting, code, 3);
+                assert_eq!(of(Core::CortexM3), of(Core::CortexM4F));
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! A plugin sends them over a socket. A QEMU that was built without plugins still writes them to
 //! its log, as text and a hundred times slower.
 
+use super::core::Core;
 use crate::output_file::temporary_folder;
 use crate::target::{self, TargetError};
 use std::io::{BufRead, BufReader, Read};
@@ -71,6 +72,8 @@ pub struct Program<'a> {
     pub image: &'a Path,
     /// QEMU's name of the machine.
     pub machine: &'a str,
+    /// The core whose timing is modelled.
+    pub core: Core,
     /// Further arguments.
     pub arguments: Vec<String>,
     /// How long it may run.
@@ -78,9 +81,10 @@ pub struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// An image made for the board of the firmware.
-    pub fn on_board(image: &'a Path) -> Self {
-        Self { image, machine: target::STM32F405.machine, arguments: Vec::new(), timeout: PATIENCE }
+    /// An image made for the board that has a core.
+    pub fn on_board(image: &'a Path, core: Core) -> Self {
+        let machine = core.board().machine;
+        Self { image, machine, core, arguments: Vec::new(), timeout: PATIENCE }
     }
 }
 

@@ -1,18 +1,19 @@
 //! The front page's "does it fit?": one row per core and arithmetic.
 
 use super::ReadmeError;
+use crate::cycles::Core;
 use crate::tolerance;
 use crate::verify::{Report, Row};
 use vm_nostd::{
     ContinuousMuscle, FesMuscle, Fixed, IntramuscularFes, NaturalContinuous, Scalar, State,
 };
 
-/// Core clock of the column "CPU", MHz: the STM32F405.
-const CLOCK_MHZ: f64 = 168.0;
-
 /// An arithmetic on a core.
 struct Fit {
-    core: &'static str,
+    core: Core,
+    /// Name of the core, and the clock of a common part (STM32F405, STM32F103, STM32C0), MHz.
+    name: &'static str,
+    clock_mhz: f64,
     arithmetic: &'static str,
     /// Cases of the table of cycles, one per mode.
     cases: [&'static str; 2],
@@ -22,19 +23,24 @@ struct Fit {
 
 /// The table, from the report of accuracy and the table of cycles.
 pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError> {
+    let fixed = |core, name, clock_mhz| Fit {
+        core,
+        name,
+        clock_mhz,
+        arithmetic: "fixed",
+        cases: ["continuous-fixed", "fes-fixed"],
+        muscle_bytes: muscle_bytes::<Fixed>(),
+    };
     let rows = [
         Fit {
-            core: "Cortex-M4F",
             arithmetic: "f32",
             cases: ["continuous-f32", "fes-f32"],
             muscle_bytes: muscle_bytes::<f32>(),
+            ..fixed(Core::CortexM4F, "Cortex-M4F", 168.0)
         },
-        Fit {
-            core: "Cortex-M4F",
-            arithmetic: "fixed",
-            cases: ["continuous-fixed", "fes-fixed"],
-            muscle_bytes: muscle_bytes::<Fixed>(),
-        },
+        fixed(Core::CortexM4F, "Cortex-M4F", 168.0),
+        fixed(Core::CortexM3, "Cortex-M3", 72.0),
+        fixed(Core::CortexM0Plus, "Cortex-M0+", 48.0),
     ];
     let mut text = String::from(
         "| core, arithmetic | cycles per tick | CPU | flash | RAM per muscle | stack | max. error |\n\
@@ -42,7 +48,7 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
     );
     for fit in rows {
         let worst = |column| {
-            let values = fit.cases.map(|case| cell(cycles, case, column));
+            let values = fit.cases.map(|case| cell(cycles, fit.core, case, column));
             let [first, second] = values;
             Ok::<_, ReadmeError>(first?.max(second?))
         };
@@ -52,12 +58,13 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
             errors.fold(0.0, f64::max)
         });
         text.push_str(&format!(
-            "| {}, `{}` | {} | {:.1} % | {:.1} KiB | {} B | {} B | {smooth:.2} % ({ringing:.1} %) |\n",
-            fit.core,
+            "| {}, `{}` | {} | {:.0} % of {} MHz | {:.1} KiB | {} B | {} B | {smooth:.2} % ({ringing:.1} %) |\n",
+            fit.name,
             fit.arithmetic,
             cycles,
             // Cycles per ms over 1000 x MHz.
-            100.0 * cycles / (CLOCK_MHZ * 1e3),
+            100.0 * cycles / (fit.clock_mhz * 1e3),
+            fit.clock_mhz,
             worst("both modes B")? / 1024.0,
             fit.muscle_bytes,
             worst("stack B")?,
@@ -88,12 +95,17 @@ fn errors<'a>(
 }
 
 /// A number of the table of cycles.
-fn cell(table: &str, row: &'static str, column: &'static str) -> Result<f64, ReadmeError> {
+fn cell(
+    table: &str,
+    core: Core,
+    row: &'static str,
+    column: &'static str,
+) -> Result<f64, ReadmeError> {
     let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
     let number = || {
         let mut lines = table.trim().lines();
         let index = cells(lines.next()?).iter().position(|cell| cell == column)?;
-        let cells = lines.map(cells).find(|cells| cells.get(1).is_some_and(|name| name == row))?;
+        let cells = lines.map(cells).find(|cells| cells.get(1..3) == Some(&[core.name(), row]))?;
         cells.get(index)?.parse().ok()
     };
     number().ok_or(ReadmeError::NoCell { row, column })

@@ -1,6 +1,6 @@
 //! The measured tables as Markdown.
 
-use crate::cycles::{self, Share};
+use crate::cycles::{self, Core, Share};
 use crate::scenario::paper_muscle;
 use crate::stack;
 use crate::verify::{Report, Row};
@@ -72,13 +72,14 @@ pub fn error_budget(report: &Report) -> String {
 /// instructions.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
-        "| case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| core | case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows.iter().filter(|row| cycles::is_listed(&row.case)) {
         text.push_str(&format!(
-            "| {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
+            row.target.name(),
             row.case,
             row.cycles_typ_mean,
             row.cycles_typ_max,
@@ -92,7 +93,8 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
             row.stack_bytes,
         ));
     }
-    let model: Vec<&cycles::Row> = rows.iter().filter(|row| !row.files.is_empty()).collect();
+    let model: Vec<&cycles::Row> =
+        rows.iter().filter(|row| row.target == Core::CortexM4F && !row.files.is_empty()).collect();
     let columns = |shares: fn(&cycles::Row) -> &[Share]| {
         model.iter().map(|row| (row.case.as_str(), shares(row))).collect::<Vec<Column<'_>>>()
     };

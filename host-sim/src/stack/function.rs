@@ -1,7 +1,7 @@
 //! Stack of one function: its own depth, and the depth at each call.
 
 use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack, sets_flags};
-use crate::cycles::{Decoded, Image};
+use crate::cycles::{Core, Decoded, Image};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A call, or a jump to another function.
@@ -45,7 +45,7 @@ const NOP: [u8; 2] = [0x00, 0xBF];
 
 impl<'a> Functions<'a> {
     pub fn new(image: &'a Image) -> Result<Self, capstone::Error> {
-        Ok(Self { image, decoded: Decoded::new(image)?, walked: BTreeMap::new() })
+        Ok(Self { image, decoded: Decoded::new(image, Core::CortexM4F)?, walked: BTreeMap::new() })
     }
 
     /// Name of the function that begins at an address.

@@ -8,6 +8,7 @@ mod mantissa;
 mod number;
 mod pieces;
 mod polynomial;
+mod product;
 mod quotient;
 mod root;
 
@@ -163,7 +164,7 @@ impl Scalar for Fixed {
     }
     fn advanced(slow: i64, difference: Self, share: u32) -> i64 {
         // The result lies between two representable numbers, even if an intermediate sum wraps.
-        slow.wrapping_add(i64::from(difference.to_bits()) * i64::from(share))
+        slow.wrapping_add(product::mixed(difference.to_bits(), share))
     }
     fn advanced_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
         Self::advanced(Self::advanced(slow, first.0, first.1), second.0, second.1)
@@ -179,9 +180,9 @@ impl Scalar for Fixed {
     fn lags(self) -> [Lags<u32>; 2] {
         let x = self.to_bits().max(0);
         let left_at_half = exponential::decay(x >> 1);
-        let left = ((u64::from(left_at_half) * u64::from(left_at_half)) >> 32) as u32;
+        let left = (product::unsigned(left_at_half, left_at_half) >> 32) as u32;
         // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
-        let delayed = |left: u32, shift: u32| ((x as u64 * u64::from(left)) >> shift) as u32;
+        let delayed = |left: u32, shift: u32| (product::unsigned(x as u32, left) >> shift) as u32;
         [
             Lags { response: u32::MAX - left_at_half, delayed: delayed(left_at_half, 25) },
             Lags { response: u32::MAX - left, delayed: delayed(left, 24) },

@@ -4,6 +4,7 @@
 //! |r| < 1/128.
 
 use super::number::high;
+use super::product;
 use crate::scalar::series;
 
 /// Bits of the index into the tables.
@@ -47,7 +48,7 @@ pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 fn reduced(m: u32) -> (usize, u32, i32) {
     let index = ((m >> (31 - INDEX_BITS)) & (ENTRIES as u32 - 1)) as usize;
     let c = RECIPROCALS[index];
-    let product = u64::from(m) * u64::from(c);
+    let product = product::unsigned(m, c);
     (index, c, (product >> 31) as u32 as i32)
 }
 
@@ -67,7 +68,7 @@ pub(super) fn reciprocal(m: u32) -> u32 {
 }
 
 /// ln 2 in Q1.31.
-const LN_2: i64 = 1_488_522_236;
+const LN_2: i32 = 1_488_522_236;
 
 /// ln x in Q8.24 of a positive number, within 1 ULP; of 0 and below, that of one ULP.
 ///
@@ -84,7 +85,7 @@ pub(super) fn ln(x: i32) -> i32 {
     let series = r - high(r, (r >> 1) - high(r, high(r, THIRD)));
     let mantissa = LOGARITHMS[index] + (series >> 1);
     let power = 7 - zeros as i32;
-    ((i64::from(power) * LN_2 + i64::from(mantissa + (1 << 6))) >> 7) as i32
+    ((product::signed(power, LN_2) + i64::from(mantissa + (1 << 6))) >> 7) as i32
 }
 
 #[cfg(test)]

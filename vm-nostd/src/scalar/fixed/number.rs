@@ -1,5 +1,6 @@
 //! The fixed-point number: saturating Q8.24.
 
+use super::product;
 use core::ops::{Add, Mul, Neg, Sub};
 use fixed::types::I8F24;
 
@@ -80,12 +81,14 @@ impl Mul for Fixed {
 }
 
 /// The product of two numbers as two words: at most 2^62.
+#[inline(always)]
 pub(super) fn exact(a: i32, b: i32) -> (i32, u32) {
-    let product = i64::from(a) * i64::from(b);
+    let product = product::signed(a, b);
     ((product >> 32) as i32, product as u32)
 }
 
 /// High word of a product: of two fractions, their product with 32 fewer fractional bits.
+#[inline(always)]
 pub(super) fn high(a: i32, b: i32) -> i32 {
     exact(a, b).0
 }

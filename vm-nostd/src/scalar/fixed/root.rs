@@ -1,6 +1,7 @@
 //! Force balance of a residual, a line and a hyperbola: a quadratic equation and its square root.
 
 use super::number::{exact, high};
+use super::product;
 use super::quotient::{ratio, word};
 use crate::scalar::series;
 
@@ -29,10 +30,10 @@ pub(super) fn hyperbola_root(
     let left = bits.leading_zeros() - 1;
     let [straight, square, bent, residual] = products.map(|product| word(product, left) >> 3);
     let linear = straight + square - bent;
-    let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
     // linear² + 4 straight bent, as a sum of positive terms.
     let difference = straight + bent - square;
-    let discriminant = wide(difference, difference) + 4 * wide(straight, square);
+    let discriminant =
+        product::signed(difference, difference) + 4 * product::signed(straight, square);
     let root = square_root(discriminant.max(1) as u64) as i32;
     // The root is at least |difference|: each sum is smaller only by rounding, and only if both of
     // its terms are large.
@@ -73,8 +74,8 @@ fn square_root(x: u64) -> u32 {
     let zeros = x.leading_zeros() & !1;
     let m = (x << zeros >> 32) as u32;
     let c = RECIPROCAL_ROOTS[(m >> (32 - INDEX_BITS)) as usize];
-    let y = ((u64::from(m) * u64::from(c)) >> 32) as u32;
-    let d = ((u64::from(y) * u64::from(c)) >> 30) as u32 as i32;
+    let y = (product::unsigned(m, c) >> 32) as u32;
+    let d = (product::unsigned(y, c) >> 30) as u32 as i32;
     // 3/8 in Q0.32, less 5/16 of d.
     let curved = 0x6000_0000 - (d >> 2) - (d >> 4);
     let beyond = (d >> 1) - high(high(d, d), curved);
