@@ -105,7 +105,9 @@ fn cell(
     let number = || {
         let mut lines = table.trim().lines();
         let index = cells(lines.next()?).iter().position(|cell| cell == column)?;
-        let cells = lines.map(cells).find(|cells| cells.get(1..3) == Some(&[core.name(), row]))?;
+        let is_wanted =
+            |cells: &Vec<String>| cells.len() > 2 && cells[1] == core.name() && cells[2] == row;
+        let cells = lines.map(cells).find(is_wanted)?;
         cells.get(index)?.parse().ok()
     };
     number().ok_or(ReadmeError::NoCell { row, column })
