@@ -49,7 +49,7 @@ impl Budgets {
 
     /// Most bytes of a state of a case.
     pub fn state_bytes(&self, case: &str) -> Option<u32> {
-        self.model.get(case).map(|budget| budget.state_bytes)
+        self.core.get(&Core::CortexM4F)?.get(case).map(|budget| budget.state_bytes)
     }
 
     /// Holds a case's row to what it may cost.
