@@ -2,6 +2,7 @@
 //! figure 7 of the paper.
 
 use super::case::{Case, Subject};
+use super::core::Core;
 use super::report::Row;
 use crate::engine::{self, Arithmetic};
 use crate::reference::Mode;
@@ -28,6 +29,9 @@ impl UnitCost {
     /// Those of the rows of the table that are of `f32`.
     pub fn of(rows: &[Row]) -> Vec<Self> {
         let cost = |row: &Row| {
+            if row.target != Core::CortexM4F {
+                return None;
+            }
             let (mode, units_per_type) = match Case::named(&row.case)?.subject {
                 Subject::Model(Mode::Continuous, Arithmetic::F32) => (Mode::Continuous, 1),
                 Subject::Discrete(units) => (Mode::Discrete, units),
