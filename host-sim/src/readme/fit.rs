@@ -2,6 +2,7 @@
 
 use super::ReadmeError;
 use crate::cycles::Core;
+use crate::engine::Class;
 use crate::tolerance;
 use crate::verify::{Report, Row};
 use vm_nostd::{
@@ -40,7 +41,7 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
         },
         fixed(Core::CortexM4F, "Cortex-M4F", 168.0),
         fixed(Core::CortexM3, "Cortex-M3", 72.0),
-        fixed(Core::CortexM0Plus, "Cortex-M0+", 48.0),
+        fixed(Core::CortexM0Plus, "Cortex-M0+, economy class", 48.0),
     ];
     let mut text = String::from(
         "| core, arithmetic | cycles per tick | CPU | flash | RAM per muscle | stack | max. error |\n\
@@ -57,8 +58,13 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
             let errors = errors(report, fit.arithmetic, ringing);
             errors.fold(0.0, f64::max)
         });
+        let error = if fit.core.class() == Class::Standard {
+            format!("{smooth:.2} % ({ringing:.1} %)")
+        } else {
+            format!("({:.1} %)", worst("max % F0")?)
+        };
         text.push_str(&format!(
-            "| {}, `{}` | {} | {:.0} % of {} MHz | {:.1} KiB | {} B | {} B | {smooth:.2} % ({ringing:.1} %) |\n",
+            "| {}, `{}` | {} | {:.0} % of {} MHz | {:.1} KiB | {} B | {} B | {error} |\n",
             fit.name,
             fit.arithmetic,
             cycles,

@@ -72,15 +72,16 @@ pub fn error_budget(report: &Report) -> String {
 /// instructions.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
-        "| core | case | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
-         |---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| core | case | class | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows.iter().filter(|row| cycles::is_listed(&row.case)) {
         text.push_str(&format!(
-            "| {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} | {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
             row.target.name(),
             row.case,
+            row.class,
             row.cycles_typ_mean,
             row.cycles_typ_max,
             row.cycles_pess_max,
