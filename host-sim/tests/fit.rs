@@ -208,7 +208,11 @@ fn what_is_wrong_with_a_list_is_named_by_key() {
         ("name = \"path_at_rest_m\"", "name = \"fascicles\"", &["no [[free]] of that name"]),
         ("[0.1, 1]", "[0.1, nan]", &["steps", "increasing"]),
         ("noise_pct_f0 = 1 ", "", &["noise_n", "noise_pct_f0"]),
-        ("[[free]]", "[[free]]\nprior = \"published\"", &["no published spread", "f05_pps"]),
+        (
+            "name = \"path_at_rest_m\"",
+            "name = \"path_at_rest_m\"\nprior = \"published\"",
+            &["no published spread", "f05_pps"],
+        ),
         ("tetanus.csv", "nowhere.csv", &["nowhere.csv"]),
     ];
     let recording = recording();
