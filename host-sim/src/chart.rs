@@ -133,8 +133,8 @@ impl Axis {
         if least > most {
             return Self { least: 0.0, most: 1.0, start, end };
         }
-        // What differs by rounding alone is a constant: a tenth of it around it, or one unit around 0,
-        // so that its labels are short.
+        // What differs by rounding alone is a constant: a tenth of it around it, or one unit around
+        // 0, so that its labels are short.
         if most - least <= 1e-6 * most.abs() {
             let around = if most == 0.0 { 1.0 } else { 0.1 * most.abs() };
             return Self { least: least - around, most: most + around, start, end };

@@ -129,7 +129,7 @@ fn cards(page: &str) {
     let all = card("largest error in f32 at 1 kHz, all scenarios");
     assert!(all.contains("fast_ramps_kinks, continuous") && all.contains("limit 1 %"), "{all}");
     let others = card("largest error in f32 at 1 kHz, where the tendon does not ring");
-    assert!(others.contains("limit 0.1 %"), "{others}");
+    assert!(others.contains("limit 0.2 %"), "{others}");
     card("largest error in fixed at 1 kHz, all scenarios");
     // A claim that does not hold is seen in its card.
     let claims = card("claims of the paper found again");
@@ -164,8 +164,10 @@ fn what_is_no_table_of_cycles_is_refused_before_anything_is_measured() {
     }
     fs::write(&cycles, CYCLES).expect("a file");
     let message = |done: Output| String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(message(report(&cycles, &cycles)).contains("must be another file than --cycles's"));
-    assert_eq!(fs::read_to_string(&cycles).expect("a file"), CYCLES);
+    let same = folder.path().join("cycles.html");
+    fs::write(&same, CYCLES).expect("a file");
+    assert!(message(report(&same, &same)).contains("must be another file than --cycles's"));
+    assert_eq!(fs::read_to_string(&same).expect("a file"), CYCLES);
     let nowhere = message(report(&folder.path().join("none/report.html"), &cycles));
     assert!(nowhere.contains("none: No such file"), "{nowhere}");
     let done = report(&out, &folder.path().join("none.json"));

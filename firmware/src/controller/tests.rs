@@ -39,7 +39,8 @@ fn armed() -> (Controller<'static>, &'static Permission) {
 
 #[test]
 fn what_the_pulse_timer_says_is_a_fault_of_the_next_tick() {
-    let cases: [(Fault, fn(&Permission, bool)); 3] = [
+    type Raise = fn(&Permission, bool);
+    let cases: [(Fault, Raise); 3] = [
         (Fault::Checksum, Permission::set_plan_lost),
         (Fault::Output, Permission::set_output_failed),
         (Fault::Deadline, Permission::set_late),

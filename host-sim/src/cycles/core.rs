@@ -55,8 +55,8 @@ impl Core {
         }
     }
 
-    /// The emulated board that runs its programs. There is none with an M0+: its instructions are among
-    /// those of an M3, whose board has more memory than the only one with an M0.
+    /// The emulated board that runs its programs. There is none with an M0+: its instructions are
+    /// among those of an M3, whose board has more memory than the only one with an M0.
     pub fn board(self) -> Board {
         match self {
             Self::CortexM4F => target::STM32F405,

@@ -87,7 +87,8 @@ impl Profile {
     }
 }
 
-/// A case of the bench on a core: all its ticks, or one of them, which is reached as fast as may be.
+/// A case of the bench on a core: all its ticks, or one of them, which is reached as fast as may
+/// be.
 pub fn of_case(
     core: Core,
     name: &str,

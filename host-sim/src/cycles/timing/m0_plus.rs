@@ -1,6 +1,6 @@
-//! The Cortex-M0+ with the multiplier of a single cycle: Arm, Cortex-M0+ Technical Reference Manual r0p1
-//! (DDI 0484C), table 3.1, zero wait states, no single-cycle I/O port. Every instruction takes what
-//! the table says, whatever is before it.
+//! The Cortex-M0+ with the multiplier of a single cycle: Arm, Cortex-M0+ Technical Reference Manual
+//! r0p1 (DDI 0484C), table 3.1, zero wait states, no single-cycle I/O port. Every instruction takes
+//! what the table says, whatever is before it.
 
 use crate::cycles::instruction::{Class, Instruction};
 

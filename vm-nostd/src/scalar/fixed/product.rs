@@ -1,11 +1,11 @@
 //! Products of two words in two words.
 //!
-//! ARMv6-M (Cortex-M0, M0+) multiplies into one word only; the compiler's routine for 64-bit products, of
-//! which half of each factor is 0, took 61 % of a tick there. Four products of half words make one of
-//! two words.
+//! ARMv6-M (Cortex-M0, M0+) multiplies into one word only; the compiler's routine for 64-bit
+//! products, of which half of each factor is 0, took 61 % of a tick there. Four products of half
+//! words make one of two words.
 
-/// Whether the core lacks UMULL and SMULL: of the Arm cores, those that have no atomic read-modify-write
-/// either, which is what stable Rust tells of them.
+/// Whether the core lacks UMULL and SMULL: of the Arm cores, those that have no atomic
+/// read-modify-write either, which is what stable Rust tells of them.
 const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// The product of two numbers: at most 2^62.
@@ -33,8 +33,9 @@ fn words((high, low): (u32, u32)) -> i64 {
 }
 
 /// # Scaling and overflow
-/// A high half is at least -2^15, a low half below 2^16: their product and 2^16 - 1 more fit in 32 bits with
-/// sign. The high word is that of the exact product, and so are the sums that lead to it, modulo 2^32.
+/// A high half is at least -2^15, a low half below 2^16: their product and 2^16 - 1 more fit in 32
+/// bits with sign. The high word is that of the exact product, and so are the sums that lead to it,
+/// modulo 2^32.
 #[inline(never)]
 fn signed_by_halves(a: i32, b: i32) -> (u32, u32) {
     let [(a_low, a_high), (b_low, b_high)] = [a, b].map(|x| (x & 0xFFFF, x >> 16));
