@@ -73,9 +73,9 @@ pub const EXCITATION_TIMES: &[&str] = &["Tf1_ms", "Tf2_ms", "Tf3_ms", "Tf4_ms"];
 /// Place of a parameter in a muscle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Key {
-    /// F0, see [`FORCE`].
+    /// F0, see `FORCE`.
     Force,
-    /// The factor [`EXCITATION`].
+    /// The factor `EXCITATION`.
     ExcitationTimes,
     /// Share of the type of this index; the others keep their proportions.
     Fraction(usize),
