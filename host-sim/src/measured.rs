@@ -2,9 +2,13 @@
 //!
 //! The definitions of the fits are in `data/measured`; the recordings are read from a folder.
 
+mod ablation;
+mod left_out;
+
+pub use left_out::LeftOut;
+
 use crate::engine::Arithmetic;
 use crate::fit::{Fit, FitError, Role, Search, Start, TrialFit, Trials, fit};
-use crate::reference::Muscle;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -54,61 +58,6 @@ const AVERAGED: f64 = 0.3;
 const MUSCLE_FILE: &str = "muscle.toml";
 const TRIALS_FILE: &str = "trials.toml";
 
-/// Ablation: a feature of Virtual Muscle that is left out, or none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LeftOut {
-    /// The full model.
-    Nothing,
-    /// Without yield.
-    Yield,
-    /// n_f is nf0 at all lengths.
-    ActivationLength,
-    /// FV at all lengths as at L_ce0.
-    VelocityLength,
-}
-
-impl LeftOut {
-    /// All versions, the full model first.
-    pub const ALL: [Self; 4] =
-        [Self::Nothing, Self::Yield, Self::ActivationLength, Self::VelocityLength];
-
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Nothing => "nothing",
-            Self::Yield => "yield",
-            Self::ActivationLength => "length dependence of Af",
-            Self::VelocityLength => "length dependence of FV",
-        }
-    }
-
-    fn out_of(self, muscle: &mut Muscle) {
-        for fiber in &mut muscle.fibers {
-            let t = &mut fiber.fiber_type;
-            match self {
-                Self::Nothing => {}
-                Self::Yield => t.yielding = None,
-                Self::ActivationLength => t.nf1 = 0.0,
-                Self::VelocityLength => {
-                    (t.cV0, t.cV1) = (t.cV0 + t.cV1, 0.0);
-                    (t.aV0, t.aV1, t.aV2) = (t.aV0 + t.aV1 + t.aV2, 0.0, 0.0);
-                }
-            }
-        }
-    }
-
-    /// Whether a free parameter belongs to the left-out feature.
-    fn concerns(self, name: &str) -> bool {
-        let keys: &[&str] = match self {
-            Self::Nothing => &[],
-            Self::Yield => &["cY", "VY", "TY_ms"],
-            Self::ActivationLength => &["nf1"],
-            Self::VelocityLength => &["cV1", "aV1", "aV2"],
-        };
-        name.rsplit_once('.').is_some_and(|(_, key)| keys.contains(&key))
-    }
-}
-
 /// A row of the results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -153,6 +102,9 @@ pub struct Board {
     pub fits: Vec<(String, &'static str, Fit)>,
     /// Missing sets, with the reason.
     pub skipped: Vec<(String, String)>,
+    /// Parameters that an ablation left at their values in the complete model because the
+    /// recordings do not determine them without the feature, by set and left-out feature.
+    pub held: Vec<(String, &'static str, Vec<String>)>,
     /// Ablations that cannot be fitted, by set and left-out feature, with the reason.
     pub refused: Vec<(String, &'static str, String)>,
     /// Residual force enhancement, of the complete model.
@@ -173,24 +125,27 @@ struct Found {
 pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<Board, FitError> {
     let mut board = Board::default();
     let found = find(folder, &mut board.skipped)?;
-    let fits: Vec<(&Found, LeftOut, Result<Fit, FitError>)> = found
+    let fits: Vec<(&Found, LeftOut, Result<(Fit, Vec<String>), FitError>)> = found
         .par_iter()
         .flat_map(|set| {
-            let whole = set.fitted(LeftOut::Nothing, None, search);
+            let whole = set.fitted(search);
             let others = left_out.par_iter().filter(|&&out| out != LeftOut::Nothing);
             let mut fits: Vec<_> = match &whole {
-                Ok(whole) => {
-                    others.map(|&out| (set, out, set.fitted(out, Some(whole), search))).collect()
-                }
+                Ok(whole) => others.map(|&out| (set, out, set.without(out, whole))).collect(),
                 Err(_) => Vec::new(),
             };
-            fits.insert(0, (set, LeftOut::Nothing, whole));
+            fits.insert(0, (set, LeftOut::Nothing, whole.map(|fit| (fit, Vec::new()))));
             fits
         })
         .collect();
     for (set, out, fit) in fits {
         let fit = match fit {
-            Ok(fit) => fit,
+            Ok((fit, held)) => {
+                if !held.is_empty() {
+                    board.held.push((set.name.clone(), out.name(), held));
+                }
+                fit
+            }
             Err(error) if out == LeftOut::Nothing => return Err(error),
             Err(error) => {
                 board.refused.push((set.name.clone(), out.name(), error.to_string()));
@@ -253,25 +208,12 @@ fn find(folder: &Path, skipped: &mut Vec<(String, String)>) -> Result<Vec<Found>
 }
 
 impl Found {
-    /// Fits a version of the model: the complete one by the search, an ablation by one start from
-    /// the solution of the complete one.
-    fn fitted(&self, out: LeftOut, whole: Option<&Fit>, search: &Search) -> Result<Fit, FitError> {
-        let mut start = self.start.named.clone();
-        out.out_of(&mut start.muscle);
-        let mut trials = self.trials.clone();
-        trials.keep(|parameter| !out.concerns(&parameter.name));
-        let starts = match whole {
-            None => search.starts,
-            Some(whole) => {
-                let ends = whole.estimates.iter().filter(|estimate| !estimate.at_bound);
-                trials.start_at(ends.map(|estimate| (estimate.name.as_str(), estimate.value)));
-                1
-            }
-        };
-        let search = Search { starts, ..*search };
+    /// Fits the complete model.
+    fn fitted(&self, search: &Search) -> Result<Fit, FitError> {
+        let Start { named, keep_force, .. } = &self.start;
         // Not in the reference: it takes longer for these small muscles than the fit.
         let confirm = [Arithmetic::F32, Arithmetic::Fixed];
-        fit(&start, self.start.keep_force, trials, &search, &confirm)
+        fit(named, *keep_force, self.trials.clone(), search, &confirm)
     }
 
     fn enhancements<'a>(&'a self, fit: &'a Fit, f0: f64) -> impl Iterator<Item = Enhancement> + 'a {

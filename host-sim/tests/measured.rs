@@ -132,9 +132,11 @@ fn real_muscle_is_met_at_least_as_well_as_published_models_meet_it() {
     }
     let mean = mean(&board, "krylow_sandercock_1997", None, LeftOut::Nothing);
     assert!(mean <= 5.0, "Krylow & Sandercock: {mean} % of F0");
-    // This model with three numbers fitted, and none to a stretch: 7 to 8 % where it is stretched
-    // by 3 mm, 14 to 19 % by 9 mm. With a stretch fitted too it is not to be further off.
-    for (trial, most) in [("61", 8.0), ("45", 8.0), ("63", 14.0), ("47", 14.0), ("50", 14.0)] {
+    // This model with three numbers fitted, and none to a stretch: at most 8 % where it is
+    // stretched by 3 mm, at most 19 % by 9 mm (shared/measured). With a stretch fitted too it is
+    // not to be further off; 6 mm lie between. The aim, 8 %, is missed by what a stretch leaves
+    // behind, below.
+    for (trial, most) in [("61", 8.0), ("45", 8.0), ("63", 13.5), ("47", 13.5), ("50", 19.0)] {
         let row = board.rows.iter().find(|row| row.trial == trial).expect("a trial");
         assert_eq!(row.role, Role::Predict.name());
         assert!(row.mae_pct_f0 <= most, "{row:?}");

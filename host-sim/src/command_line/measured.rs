@@ -73,6 +73,13 @@ fn text(board: &Board, left_out: &[LeftOut]) -> String {
             left.dataset, left.measured_pct_f0, left.trial, left.isometric, left.model_pct_f0
         );
     }
+    for (set, out, held) in &board.held {
+        let names = held.join(", ");
+        text += &format!(
+            "- {set} without {out}: the recordings do not determine {names}, which stays as in the \
+             complete model\n"
+        );
+    }
     for (set, out, reason) in &board.refused {
         text += &format!("- {set} without {out}: {reason}\n");
     }

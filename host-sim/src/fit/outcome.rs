@@ -71,7 +71,8 @@ pub struct Fit {
 pub const CONFIRMED: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
 
 /// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass. The
-/// result is run again in the arithmetics `confirm`.
+/// result is run again in the arithmetics `confirm`; if fixed point is one of them, the search keeps to
+/// muscles that it accepts.
 pub fn fit(
     start: &NamedMuscle,
     keep_force: bool,
@@ -79,7 +80,8 @@ pub fn fit(
     search: &Search,
     confirm: &[Arithmetic],
 ) -> Result<Fit, FitError> {
-    let problem = Problem::new(start.muscle.clone(), keep_force, trials)?;
+    let in_fixed_point = confirm.contains(&Arithmetic::Fixed);
+    let problem = Problem::new(start.muscle.clone(), keep_force, in_fixed_point, trials)?;
     let (solution, near) = search.best(&problem)?;
     let values = &solution.values;
     let failed = |why: &str| FitError::NoSolution(search.starts, why.to_owned());

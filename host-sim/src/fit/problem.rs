@@ -16,6 +16,8 @@ pub struct Problem {
     start: Muscle,
     /// F0 is kept where fascicle length or tension change.
     keep_force: bool,
+    /// Fixed point has to accept every muscle of the search.
+    in_fixed_point: bool,
     pub(super) trials: Trials,
 }
 
@@ -32,8 +34,13 @@ pub struct Played {
 
 impl Problem {
     /// Of recordings and a muscle to start from; refused where that cannot be run on them.
-    pub fn new(start: Muscle, keep_force: bool, trials: Trials) -> Result<Self, FitError> {
-        let problem = Self { start, keep_force, trials };
+    pub fn new(
+        start: Muscle,
+        keep_force: bool,
+        in_fixed_point: bool,
+        trials: Trials,
+    ) -> Result<Self, FitError> {
+        let problem = Self { start, keep_force, in_fixed_point, trials };
         let values: Vec<f64> = problem.parameters().iter().map(|p| p.start).collect();
         for trial in &problem.trials.trials {
             problem
@@ -79,8 +86,9 @@ impl Problem {
         let muscle = self.muscle(values);
         let trace = self.inputs(trial, values)?;
         let path = trace.inputs[0].path_length;
-        // What is fitted has to be taken by the firmware, in fixed point too.
-        engine::at_rest(&muscle, trial.mode, Arithmetic::Fixed, trace.time_step, path)?;
+        if self.in_fixed_point {
+            engine::at_rest(&muscle, trial.mode, Arithmetic::Fixed, trace.time_step, path)?;
+        }
         let rows = engine::run(&muscle, trial.mode, arithmetic, &trace)?;
         let forces: Vec<f64> = rows.iter().map(|row| row.0.force).collect();
         let model = trial
