@@ -1,5 +1,8 @@
 //! Architecture: who may know whom.
 
+#[path = "rooms/imports.rs"]
+mod imports;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -73,6 +76,20 @@ fn only_the_board_names_the_chip() {
 #[test]
 fn only_one_module_names_what_levels_share() {
     assert_eq!(mentions("firmware/src", &["atomic::"]), ["board/watchdog.rs", "shared.rs"]);
+}
+
+/// Files of a crate that import each other in a loop.
+fn circles(crate_root: &str) -> Vec<String> {
+    let file = root().join(crate_root);
+    let folder = file.parent().expect("a folder");
+    imports::Crate::new(&sources(folder), &file).circles(folder)
+}
+
+#[test]
+fn no_file_imports_back() {
+    let crates = ["vm-nostd/src/lib.rs", "vm-nostd/c/src/lib.rs"];
+    let found: Vec<_> = crates.into_iter().map(|file| (file, circles(file))).collect();
+    assert!(found.iter().all(|(_, circles)| circles.is_empty()), "{found:#?}");
 }
 
 /// These packages are built for each mutant.

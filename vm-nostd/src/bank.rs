@@ -1,6 +1,7 @@
 //! A bank of muscles, continuous or FES, that one call steps.
 
-use crate::muscle::{ContinuousMuscle, FesMuscle, Input, Output};
+use crate::io::{Input, Output};
+use crate::muscle::{ContinuousMuscle, FesMuscle};
 use crate::recruitment::{IntramuscularFes, NaturalContinuous};
 use crate::scalar::Scalar;
 use crate::state::State;

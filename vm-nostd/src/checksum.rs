@@ -101,11 +101,11 @@ mod tests {
     use crate::checksum::Checksum;
     use crate::muscle::{ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle};
     use crate::params::MuscleParams;
-    use crate::presets::PAPER_MUSCLE;
+    use crate::params::presets::PAPER_MUSCLE;
     use crate::recruitment::{MotorUnits, UnitSizes};
     use crate::scalar::Scalar;
     use crate::scalar::fixed::Fixed;
-    use crate::time_step::TimeStep;
+    use crate::tick::time_step::TimeStep;
 
     #[test]
     fn a_word_that_differs_is_seen_wherever_it_is() {

@@ -1,90 +1,13 @@
-//! Where inputs and state must stay, and the flags that say when they had to be kept there.
+//! Ranges of inputs and state.
 
-use crate::checksum::{Summed, summed};
-use crate::muscle::Input;
+use crate::checksum::summed;
+use crate::io::Input;
 use crate::params::MuscleParams;
+use crate::params::limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
 use crate::scalar::Scalar;
-use core::ops::Add;
-
-bitflags::bitflags! {
-    /// What a tick had to saturate; empty when inputs and state were inside the domain.
-    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-    pub struct Status: u16 {
-        /// Activation was outside 0..1 and was clipped.
-        const ACTIVATION_CLIPPED = 1 << 0;
-        /// Activation was not a number (taken as 0) or infinite (clipped).
-        const ACTIVATION_NOT_FINITE = 1 << 1;
-        /// Stimulation frequency was outside 0..500 pps and was clipped.
-        const FREQUENCY_CLIPPED = 1 << 2;
-        /// Stimulation frequency was not a number (taken as 0) or infinite (clipped).
-        const FREQUENCY_NOT_FINITE = 1 << 3;
-        /// Path length was outside the muscle's range and was clipped: shorter than a slack tendon
-        /// with the fascicles at FV's pole, or longer than any activation could hold with n_f still
-        /// defined, or beyond what the arithmetic holds.
-        /// [`MuscleParams::path_domain`](crate::MuscleParams::path_domain) has the rules.
-        const PATH_LENGTH_CLIPPED = 1 << 4;
-        /// Path length was not a number (the one before was kept) or infinite (clipped).
-        const PATH_LENGTH_NOT_FINITE = 1 << 5;
-        /// The fascicles left the range of lengths, or shortened faster than V_max of a type, so
-        /// that force-length, force-velocity or activation-frequency relation do not hold; they
-        /// were taken at the edge of their range.
-        const FASCICLE_OUTSIDE_DOMAIN = 1 << 6;
-        /// The fascicles were stopped at the least or greatest length the state can have.
-        const FASCICLE_LENGTH_LIMITED = 1 << 7;
-        /// The fascicles were held at the greatest speed the state can have, 60 L_ce0/s.
-        const FASCICLE_VELOCITY_LIMITED = 1 << 8;
-        /// The forces on the fascicles were out of balance by more than half of F0 at the velocity
-        /// foreseen for a substep, as when a path jumps: force is less accurate.
-        const MECHANICS_UNSETTLED = 1 << 9;
-        /// The tendon is extended by more than the arithmetic can tell: its force was taken at
-        /// the most that it can. Only in fixed point, and at no less than ten times F0.
-        const TENDON_FORCE_LIMITED = 1 << 10;
-        /// No activation holds the force that was asked for: the answer is the nearest. Never set
-        /// by a tick.
-        const FORCE_UNREACHABLE = 1 << 11;
-    }
-}
-
-/// Greatest stimulation frequency, pps.
-pub(crate) const MAXIMUM_STIMULATION_FREQUENCY: f64 = 500.0;
-/// Greatest fascicle speed, L_ce0/s.
-pub(crate) const MAXIMUM_SPEED: f64 = 60.0;
-
-/// A closed range.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub struct Range<S> {
-    pub(crate) least: S,
-    pub(crate) most: S,
-}
-
-summed!([S: Summed] Range<S> { least, most });
-
-impl<T: Copy + PartialOrd> Range<T> {
-    pub(crate) fn new((least, most): (f64, f64), nearest: impl Fn(f64) -> T) -> Self {
-        Self { least: nearest(least), most: nearest(most) }
-    }
-
-    /// The nearest value in the range, and whether that is another one; the least for
-    /// not-a-number.
-    pub(crate) fn clip(&self, value: T) -> (T, bool) {
-        let raised = if value > self.least { value } else { self.least };
-        let clipped = if raised < self.most { raised } else { self.most };
-        (clipped, clipped != value)
-    }
-
-    /// Whether a value is in the range or out of it by no more than rounding may take it.
-    pub(crate) fn about_contains(&self, value: T, rounding: T) -> bool
-    where
-        T: Add<Output = T>,
-    {
-        value + rounding >= self.least && value <= self.most + rounding
-    }
-
-    pub(crate) fn contains(&self, value: T) -> bool {
-        value >= self.least && value <= self.most
-    }
-}
+use crate::status::Status;
+use crate::tick::admission::admit_one;
+use crate::tick::range::Range;
 
 /// The stated domain of a muscle's inputs and state.
 #[derive(Clone, Copy, Debug)]
@@ -173,37 +96,4 @@ impl<S: Scalar> Domain<S> {
             | p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE);
         (Input { activation, path_length, stimulation_frequency }, status)
     }
-}
-
-/// What was wrong with an input.
-#[derive(Clone, Copy)]
-pub(crate) enum Admission {
-    AsIs,
-    Clipped,
-    NotFinite,
-}
-
-impl Admission {
-    fn flags(self, clipped: Status, not_finite: Status) -> Status {
-        match self {
-            Self::AsIs => Status::empty(),
-            Self::Clipped => clipped,
-            Self::NotFinite => not_finite,
-        }
-    }
-}
-
-/// A value as a range admits it, and what was wrong with it; `instead` is taken for not-a-number.
-pub(crate) fn admit_one<T: Copy + PartialOrd>(
-    range: &Range<T>,
-    value: T,
-    instead: T,
-    is_finite: impl Fn(T) -> bool,
-) -> (T, Admission) {
-    if range.contains(value) {
-        return (value, Admission::AsIs);
-    }
-    let is_number = value.partial_cmp(&value).is_some();
-    let (clipped, _) = range.clip(if is_number { value } else { instead });
-    (clipped, if is_finite(value) { Admission::Clipped } else { Admission::NotFinite })
 }

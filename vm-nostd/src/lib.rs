@@ -72,26 +72,26 @@
 //!
 //! | paper | item | unit | range | file |
 //! |---|---|---|---|---|
-//! | U | [`Input::activation`] | 1 | 0..1 | `recruitment.rs` |
+//! | U | [`Input::activation`] | 1 | 0..1 | `recruitment/mode.rs` |
 //! | f_stim | [`Input::stimulation_frequency`] | pps | 0..500 | `recruitment/fes.rs` |
 //! | L_mt | [`Input::path_length`] | m | `path_domain` of the muscle | `domain.rs` |
-//! | F0 F_se | [`Output::force`] | N | >= 0 | `tendon.rs` |
-//! | F_se | [`Output::relative_force`] | F0 | >= 0 | `tendon.rs` |
-//! | L | [`Output::fascicle_length`] | L_ce0 | `fascicle_domain` of the muscle | `contraction.rs` |
-//! | V | [`Output::fascicle_velocity`] | L_ce0/s | -60..60 | `contraction.rs` |
+//! | F0 F_se | [`Output::force`] | N | >= 0 | `equations/tendon.rs` |
+//! | F_se | [`Output::relative_force`] | F0 | >= 0 | `equations/tendon.rs` |
+//! | L | [`Output::fascicle_length`] | L_ce0 | `fascicle_domain` of the muscle | `mechanics/contraction.rs` |
+//! | V | [`Output::fascicle_velocity`] | L_ce0/s | -60..60 | `mechanics/contraction.rs` |
 //! | U_eff | effective activation | 1 | 0..1 | `recruitment/continuous.rs` |
 //! | W_i, Uth_i | recruitment | 1 | 0..1 | `recruitment/continuous.rs` |
 //! | f_env | firing frequency | f0.5 | 0..10 | `recruitment/firing.rs` |
 //! | pcsa_j, Uth_j | [`MotorUnits`], [`UnitSizes`] | 1 | 0..1 | `recruitment/motor_units.rs` |
 //! | L_eff, T_L | effective length | L_ce0, s | as L; 5e-5..0.01 | `recruitment/acting_length.rs` |
-//! | f_int, f_eff, T_f | [`ExcitationParams`] | f0.5, s | >= 0 | `excitation.rs` |
-//! | Af, n_f | [`ActivationParams`] | 1 | 0..1, >= 0.2 | `activation.rs` |
-//! | Y | [`YieldParams`] | 1 | 0..1 | `yielding.rs` |
-//! | S | [`SagParams`] | 1 | 0.01..10 | `sag.rs` |
-//! | FL | [`ForceLengthParams`] | 1 | 0..1 | `force_length.rs` |
-//! | FV | [`ForceVelocityParams`] | 1 | >= 0, V >= V_max | `force_velocity.rs` |
-//! | F_pe1, F_pe2 | [`ParallelParams`], [`CompressionParams`] | F0 | any; <= 0 | `passive.rs` |
-//! | F_se(L_se) | [`TendonParams`] | F0 | >= 0 | `tendon.rs` |
+//! | f_int, f_eff, T_f | [`ExcitationParams`] | f0.5, s | >= 0 | `equations/excitation.rs` |
+//! | Af, n_f | [`ActivationParams`] | 1 | 0..1, >= 0.2 | `equations/activation_frequency.rs` |
+//! | Y | [`YieldParams`] | 1 | 0..1 | `equations/yielding.rs` |
+//! | S | [`SagParams`] | 1 | 0.01..10 | `equations/sag.rs` |
+//! | FL | [`ForceLengthParams`] | 1 | 0..1 | `equations/force_length.rs` |
+//! | FV | [`ForceVelocityParams`] | 1 | >= 0, V >= V_max | `equations/force_velocity.rs` |
+//! | F_pe1, F_pe2 | [`ParallelParams`], [`CompressionParams`] | F0 | any; <= 0 | `equations/passive.rs` |
+//! | F_se(L_se) | [`TendonParams`] | F0 | >= 0 | `equations/tendon.rs` |
 //! | F0 | [`MuscleParams::max_isometric_force`] | N | > 0 | `params.rs` |
 //! | L_max | [`MuscleParams::maximum_fascicle_length`] | L_ce0 | 0.8..2 | `params.rs` |
 //!
@@ -106,65 +106,56 @@
 //! mechanics", J. Neural Eng. 5 (2008) 175-184.
 #![cfg_attr(not(test), no_std)]
 
-mod activation;
 mod bank;
+mod beyond_paper;
 mod checksum;
-mod class;
-mod contraction;
 mod domain;
+mod equations;
 mod error;
-mod excitation;
-mod fatigue;
-mod force_length;
-mod force_velocity;
-mod lag;
+mod fiber;
+mod io;
+mod mechanics;
 mod muscle;
-#[cfg(test)]
-mod oracle;
 mod params;
-mod passive;
-mod presets;
 mod recruitment;
-mod recruitment_curve;
-mod sag;
-#[cfg(test)]
-mod saturation;
+mod saved;
 mod scalar;
 mod state;
-mod steady;
-mod tendon;
-mod time_step;
-mod units;
-mod yielding;
+mod status;
+#[cfg(test)]
+mod tests;
+mod tick;
 
-pub use activation::ActivationParams;
 pub use bank::{Bank, BankFull, BankedMuscle};
-pub use checksum::Checksum;
-pub use class::Class;
-pub use domain::Status;
-pub use error::{Limit, ParameterError};
-pub use excitation::ExcitationParams;
-pub use fatigue::{Fatigue, FatigueParams, FatigueState};
-pub use force_length::ForceLengthParams;
-pub use force_velocity::ForceVelocityParams;
-pub use muscle::{
-    ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle, Input, Muscle, Output,
+pub use beyond_paper::fatigue::{Fatigue, FatigueParams, FatigueState};
+pub use beyond_paper::recruitment_curve::{
+    Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams,
 };
+pub use beyond_paper::steady::{Steady, SteadyFes};
+pub use checksum::Checksum;
+pub use equations::activation_frequency::ActivationParams;
+pub use equations::excitation::ExcitationParams;
+pub use equations::force_length::ForceLengthParams;
+pub use equations::force_velocity::ForceVelocityParams;
+pub use equations::passive::{CompressionParams, ParallelParams};
+pub use equations::sag::SagParams;
+pub use equations::tendon::TendonParams;
+pub use equations::yielding::YieldParams;
+pub use error::{Limit, ParameterError};
+pub use io::{Input, Output};
+pub use muscle::{ContinuousMuscle, DiscreteMuscle, EffectiveLengthMuscle, FesMuscle, Muscle};
+pub use params::class::Class;
+pub use params::presets::{feline_vm4, human_vm4, paper_table_1};
 pub use params::{ElementParams, FiberParams, FiberType, MuscleParams};
-pub use passive::{CompressionParams, ParallelParams};
-pub use presets::{feline_vm4, human_vm4, paper_table_1};
 #[doc(hidden)]
 pub use recruitment::ActingLength;
 pub use recruitment::{
     EffectiveLength, FascicleLength, IntramuscularFes, MotorUnits, NaturalContinuous,
     NaturalDiscrete, Recruitment, UnitSizes,
 };
-pub use recruitment_curve::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
-pub use sag::SagParams;
+pub use saved::RestoreError;
 pub use scalar::Scalar;
 pub use scalar::fixed::Fixed;
-pub use state::{RestoreError, State};
-pub use steady::{Steady, SteadyFes};
-pub use tendon::TendonParams;
-pub use time_step::TimeStep;
-pub use yielding::YieldParams;
+pub use state::State;
+pub use status::Status;
+pub use tick::time_step::TimeStep;

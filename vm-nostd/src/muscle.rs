@@ -1,55 +1,26 @@
 //! A muscle: parameters made into coefficients once, and the tick.
 
-use crate::activation::ActivationFrequency;
 use crate::checksum::{Checksum, Summed, summed};
-use crate::contraction::{Contractile, Contraction, Motion};
-use crate::domain::{Domain, Status};
+use crate::domain::Domain;
+use crate::equations::force_length::OptimalLength;
+use crate::equations::passive::{Compression, Parallel};
+use crate::equations::yielding::Speed;
 use crate::error::{ParameterError, within};
-use crate::excitation::Excitation;
-use crate::force_length::{ForceLength, OptimalLength};
-use crate::force_velocity::ForceVelocity;
-use crate::params::{FiberParams, MuscleParams};
-use crate::passive::{Compression, Parallel};
+use crate::fiber::Fiber;
+use crate::io::{Input, Output};
+use crate::mechanics::contraction::{Contractile, Contraction, INERTIA, Motion, largest_inertia};
+use crate::params::MuscleParams;
 use crate::recruitment::{
-    Course, EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous,
-    NaturalDiscrete, Recruitment, RecruitmentTick, share,
+    EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous, NaturalDiscrete,
+    Recruitment, RecruitmentTick,
 };
-use crate::sag::Sag;
+use crate::saved::{ROUNDING, RestoreError, Saved};
 use crate::scalar::Scalar;
-use crate::state::{ROUNDING, RestoreError, Saved, State};
-use crate::time_step::TimeStep;
-use crate::yielding::{Speed, Yielding};
-
-/// Inputs of one tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Input<S: Scalar> {
-    /// Activation U (natural modes) or strength of the stimulus (FES), 0..1, in force during
-    /// the tick.
-    pub activation: S,
-    /// Musculotendon path length L_mt at the tick's end, in m (in fixed point: µm); it is taken
-    /// to have changed linearly since the tick before.
-    pub path_length: S::PathLength,
-    /// Stimulation frequency f_stim, pps, 0..500, in force during the tick (FES only).
-    pub stimulation_frequency: S::Quantity,
-}
-
-/// What one tick yields.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Output<S: Scalar> {
-    /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. It has no upper bound but
-    /// the tendon's stiffness: a path that jumps, as a faulty sensor may, stretches the tendon by
-    /// all of it.
-    pub force: S::Force,
-    /// The same relative to F0, F_se: in fixed point to 6e-8 F0, where `force` is told to 1 mN.
-    pub relative_force: S,
-    /// Fascicle length L, L_ce0.
-    pub fascicle_length: S,
-    /// Fascicle velocity V, L_ce0/s, positive when lengthening.
-    pub fascicle_velocity: S,
-    /// What had to be saturated.
-    pub status: Status,
-}
+use crate::state::State;
+use crate::status::Status;
+use crate::tick::course::Course;
+use crate::tick::range::share;
+use crate::tick::time_step::TimeStep;
 
 /// A muscle of `N` fibre types under natural continuous recruitment.
 pub type ContinuousMuscle<S, const N: usize> = Muscle<S, NaturalContinuous, N>;
@@ -84,34 +55,6 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 
 summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, optimal_length, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
 
-/// The coefficients of one fibre type.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub struct Fiber<S: Scalar> {
-    pub(crate) excitation: Excitation<S>,
-    pub(crate) sag: Sag<S>,
-    yielding: Yielding<S>,
-    pub(crate) activation: ActivationFrequency<S>,
-    force_length: ForceLength<S>,
-    pub(crate) force_velocity: ForceVelocity<S>,
-}
-
-summed!([S: Scalar] Fiber<S> { excitation, sag, yielding, activation, force_length, force_velocity });
-
-impl<S: Scalar> Fiber<S> {
-    fn new(params: &FiberParams, domain: (f64, f64), step: TimeStep) -> Self {
-        let t = &params.fiber_type;
-        Self {
-            excitation: Excitation::new(&t.excitation, step),
-            sag: Sag::new(t.sag.as_ref(), step),
-            yielding: Yielding::new(t.yielding.as_ref(), step),
-            activation: ActivationFrequency::new(&t.activation),
-            force_length: ForceLength::new(&t.force_length, domain),
-            force_velocity: ForceVelocity::new(&t.force_velocity),
-        }
-    }
-}
-
 /// Bisections that bring a resting length to the last bit of `f32` and near that of `f64`.
 const REST_BISECTIONS: usize = 48;
 
@@ -132,6 +75,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         step: TimeStep,
     ) -> Result<Self, ParameterError> {
         params.validate()?;
+        within(INERTIA, largest_inertia(params, step), 0.0, S::LARGEST_COEFFICIENT)?;
         params.validate_magnitudes(step, S::LARGEST_COEFFICIENT, S::LONGEST_PATH)?;
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
         let (least, most) = S::MAXIMAL_FORCES;

@@ -1,19 +1,22 @@
 //! Parameters of a muscle, in SI units and `f64`, and their limits.
 
-use crate::activation::ActivationParams;
-use crate::class::Class;
-use crate::contraction::largest_inertia;
-use crate::domain::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
+pub(crate) mod class;
+pub(crate) mod limits;
+pub(crate) mod presets;
+
+use crate::equations::activation_frequency::ActivationParams;
+use crate::equations::excitation::ExcitationParams;
+use crate::equations::force_length::ForceLengthParams;
+use crate::equations::force_velocity::ForceVelocityParams;
+use crate::equations::passive::{CompressionParams, ParallelParams};
+use crate::equations::sag::SagParams;
+use crate::equations::tendon::TendonParams;
+use crate::equations::yielding::YieldParams;
 use crate::error::{Limit, ParameterError, within};
-use crate::excitation::ExcitationParams;
-use crate::force_length::ForceLengthParams;
-use crate::force_velocity::ForceVelocityParams;
-use crate::passive::{CompressionParams, ParallelParams};
-use crate::sag::SagParams;
 use crate::scalar::Scalar;
-use crate::tendon::TendonParams;
-use crate::time_step::TimeStep;
-use crate::yielding::YieldParams;
+use crate::tick::time_step::TimeStep;
+use class::Class;
+use limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
 
 /// Coefficients of a fibre type.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +152,6 @@ const HALVINGS: usize = 60;
 /// Names of derived quantities that are refused.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Names of derived quantities that fixed point refuses.
-const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
 const PARALLEL: &str = "parallel.stiffness: force of the longest fascicles, F0";
 const PARALLEL_TOE: &str = "parallel.toe: longest fascicles beyond slack, toes";
@@ -282,7 +284,6 @@ impl<const N: usize> MuscleParams<N> {
         longest_path: f64,
     ) -> Result<(), ParameterError> {
         let (shortest, longest) = self.fascicle_domain();
-        within(INERTIA, largest_inertia(self, step), 0.0, largest)?;
         let tendon = &self.elements.tendon;
         let stiffness = tendon.stiffness * self.fascicle_length / self.tendon_length;
         within("tendon.stiffness: F0/L_ce0", stiffness, 0.0, 100.0 * largest)?;

@@ -316,7 +316,7 @@ pub(super) mod tests {
         Row {
             both_modes_bytes: Some(9000),
             ratio: Some(120.0),
-            files: vec![share("muscle.rs", 500.0), share("tendon.rs", 400.0)],
+            files: vec![share("muscle.rs", 500.0), share("equations/tendon.rs", 400.0)],
             classes: vec![share("load", 900.0)],
             ..row
         }

@@ -3,13 +3,13 @@
 //! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own
 //! L_eff: dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
-use super::Moment;
+use super::mode::Moment;
 use crate::checksum::{Summed, summed};
-use crate::domain::Range;
 use crate::params::FiberType;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
 use core::fmt::Debug;
 
 /// Af depends on the fascicles' length.

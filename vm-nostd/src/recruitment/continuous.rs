@@ -9,17 +9,18 @@
 
 use super::firing::Firing;
 use super::lumped::LumpedState;
-use super::{Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
+use super::unit::activated;
 use crate::checksum::summed;
-use crate::domain::Range;
+use crate::equations::sag::{SagParams, share_above};
 use crate::error::ParameterError;
-use crate::lag::Lag;
-use crate::muscle::Fiber;
+use crate::fiber::Fiber;
 use crate::params::MuscleParams;
-use crate::sag::{SagParams, share_above};
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::lag::Lag;
+use crate::tick::range::{Range, share};
+use crate::tick::time_step::TimeStep;
 
 /// Natural continuous recruitment. The stimulation frequency is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +93,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     ) -> Result<Self::State, RestoreError> {
         let frequencies =
             self.units.map(|unit| Range { least: S::ZERO, most: unit.frequency(S::ONE) });
-        LumpedState::restored(fibers, saved, super::share(), frequencies)
+        LumpedState::restored(fibers, saved, share(), frequencies)
     }
 
     #[inline(always)]

@@ -6,19 +6,18 @@
 
 use super::acting_length::ActingLength;
 use super::firing::Firing;
+use super::mode::{Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick};
 use super::motor_units::MotorUnits;
-use super::{
-    Activity, Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick, activated,
-};
+use super::unit::{Activity, activated};
 use crate::checksum::{Summed, summed};
-use crate::domain::Range;
+use crate::equations::sag::{SagParams, share_above};
 use crate::error::ParameterError;
-use crate::muscle::Fiber;
+use crate::fiber::Fiber;
 use crate::params::MuscleParams;
-use crate::sag::{SagParams, share_above};
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::range::{Range, share};
+use crate::tick::time_step::TimeStep;
 use core::marker::PhantomData;
 
 /// Natural discrete recruitment of at most `UNITS` motor units, whose Af depends on the length `A`.
@@ -135,7 +134,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         let mut state = self.at_rest(fibers);
         for (kept, unit) in state.units.iter_mut().zip(&self.units) {
             let frequencies = Range { least: S::ZERO, most: unit.firing.frequency(S::ONE) };
-            let levels = fibers.get(unit.fiber).map_or(super::share(), |fiber| fiber.sag.range());
+            let levels = fibers.get(unit.fiber).map_or(share(), |fiber| fiber.sag.range());
             *kept = UnitState {
                 intermediate_frequency: saved.lag_state(&frequencies)?,
                 effective_frequency: saved.lag_state(&frequencies)?,

@@ -6,16 +6,18 @@
 //! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
 
 use super::lumped::LumpedState;
-use super::{Moment, Recruited, Recruitment, RecruitmentTick, activated};
+use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
+use super::unit::activated;
 use crate::checksum::summed;
-use crate::domain::{MAXIMUM_STIMULATION_FREQUENCY, Range};
+use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
-use crate::muscle::Fiber;
+use crate::fiber::Fiber;
 use crate::params::MuscleParams;
-use crate::sag::SagParams;
+use crate::params::limits::MAXIMUM_STIMULATION_FREQUENCY;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::range::{Range, share};
+use crate::tick::time_step::TimeStep;
 
 /// Intramuscular FES: activation is the strength of the stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +93,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         let highest = self.first_frequency(S::quantity(MAXIMUM_STIMULATION_FREQUENCY));
         let first_frequency = Range { least: S::ZERO, most: highest };
         // The two lags carry the recruitment.
-        LumpedState::restored(fibers, saved, first_frequency, [super::share(); N])
+        LumpedState::restored(fibers, saved, first_frequency, [share(); N])
     }
 
     #[inline(always)]

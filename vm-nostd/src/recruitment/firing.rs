@@ -46,7 +46,7 @@ impl<S: Scalar> Firing<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::presets::paper_table_1::SLOW;
+    use crate::params::presets::paper_table_1::SLOW;
     use crate::scalar::fixed::Fixed;
 
     /// f_env at the threshold, as U is compared with it, and at U = 1.

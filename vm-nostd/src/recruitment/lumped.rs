@@ -1,10 +1,11 @@
 //! State of the modes that take each fibre type as one unit.
 
-use super::{Activity, RecruitmentState};
-use crate::domain::Range;
-use crate::muscle::Fiber;
+use super::mode::RecruitmentState;
+use super::unit::Activity;
+use crate::fiber::Fiber;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
-use crate::state::{RestoreError, Saved};
+use crate::tick::range::Range;
 
 /// Recruitment, and excitation of each type.
 #[derive(Clone, Copy, Debug, PartialEq)]

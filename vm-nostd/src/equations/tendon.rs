@@ -4,7 +4,7 @@ use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
-use crate::time_step::TimeStep;
+use crate::tick::time_step::TimeStep;
 
 /// Coefficients of the series elastic element.
 #[derive(Clone, Copy, Debug, PartialEq)]

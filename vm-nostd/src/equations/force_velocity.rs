@@ -7,8 +7,8 @@
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
-use crate::recruitment::Course;
 use crate::scalar::Scalar;
+use crate::tick::course::Course;
 
 /// Coefficients of FV.
 #[derive(Clone, Copy, Debug, PartialEq)]

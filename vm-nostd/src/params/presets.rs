@@ -2,29 +2,29 @@
 //!
 //! A test compares them with `host-sim/data/fibers.csv` and `elements.csv`.
 
-use crate::activation::ActivationParams;
-use crate::excitation::ExcitationParams;
-use crate::force_length::ForceLengthParams;
-use crate::force_velocity::ForceVelocityParams;
+use crate::equations::activation_frequency::ActivationParams;
+use crate::equations::excitation::ExcitationParams;
+use crate::equations::force_length::ForceLengthParams;
+use crate::equations::force_velocity::ForceVelocityParams;
+use crate::equations::passive::{CompressionParams, ParallelParams};
+use crate::equations::sag::SagParams;
+use crate::equations::tendon::TendonParams;
+use crate::equations::yielding::YieldParams;
 use crate::params::{ElementParams, FiberType};
-use crate::passive::{CompressionParams, ParallelParams};
-use crate::sag::SagParams;
-use crate::tendon::TendonParams;
-use crate::yielding::YieldParams;
 
 /// The paper's muscle, for tests.
 #[cfg(test)]
-pub(crate) const PAPER_MUSCLE: crate::MuscleParams<2> = crate::MuscleParams {
+pub(crate) const PAPER_MUSCLE: super::MuscleParams<2> = super::MuscleParams {
     mass: 97.5e-3,
     fascicle_length: 0.11,
     tendon_length: 0.02,
     max_path_length: 0.184,
     recruitment_saturation: 0.8,
-    class: crate::Class::Standard,
+    class: super::class::Class::Standard,
     elements: paper_table_1::ELEMENTS,
     fibers: [
-        crate::FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
-        crate::FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
+        super::FiberParams { fraction: 0.6, fiber_type: paper_table_1::SLOW },
+        super::FiberParams { fraction: 0.4, fiber_type: paper_table_1::FAST },
     ],
 };
 

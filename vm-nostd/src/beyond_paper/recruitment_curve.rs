@@ -13,9 +13,10 @@
 //! form.
 
 use crate::checksum::{Checksum, Summed, summed};
-use crate::domain::{Admission, Range, admit_one};
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::tick::admission::{Admission, admit_one};
+use crate::tick::range::Range;
 
 bitflags::bitflags! {
     /// What was wrong with a pulse, or with the pulse that was asked for.

@@ -9,13 +9,14 @@
 //! Virtual Muscle: without it a muscle keeps every bit.
 
 use crate::checksum::{Checksum, Summed, summed};
-use crate::domain::{Range, admit_one};
 use crate::error::{ParameterError, within};
-use crate::muscle::Output;
+use crate::io::Output;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::admission::admit_one;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
 
 /// From this frequency on, λ is 1; pps.
 const SATURATING_FREQUENCY: f64 = 100.0;

@@ -10,17 +10,19 @@
 //! the force is unreachable, the nearest one is found by bisection; if the tendon is so long that
 //! there may be several equilibria, the result is checked by bisection.
 
-use crate::activation::ActivationFrequency;
-use crate::domain::{Domain, Status};
+use crate::domain::Domain;
+use crate::equations::activation_frequency::ActivationFrequency;
+use crate::equations::force_length::{ForceLength, OptimalLength};
+use crate::equations::passive::{Compression, Parallel};
+use crate::equations::sag::SagParams;
+use crate::equations::tendon::{Tendon, TendonInverse};
 use crate::error::ParameterError;
-use crate::force_length::{ForceLength, OptimalLength};
-use crate::muscle::{FesMuscle, Input};
+use crate::io::Input;
+use crate::muscle::FesMuscle;
 use crate::params::MuscleParams;
-use crate::passive::{Compression, Parallel};
-use crate::sag::SagParams;
 use crate::scalar::Scalar;
-use crate::tendon::{Tendon, TendonInverse};
-use crate::time_step::TimeStep;
+use crate::status::Status;
+use crate::tick::time_step::TimeStep;
 
 /// Steady state of a muscle under intramuscular FES.
 #[derive(Clone, Copy, Debug)]

@@ -2,20 +2,20 @@
 //! difference quotient.
 
 use crate::ContinuousMuscle;
-use crate::activation::ActivationFrequency;
-use crate::excitation::Excitation;
-use crate::force_length::tests::{force_length, papers_force_length};
-use crate::force_velocity::ForceVelocity;
-use crate::lag::Lag;
-use crate::muscle::Input;
+use crate::equations::activation_frequency::ActivationFrequency;
+use crate::equations::excitation::Excitation;
+use crate::equations::force_length::tests::{force_length, papers_force_length};
+use crate::equations::force_velocity::ForceVelocity;
+use crate::equations::passive::{Compression, Parallel};
+use crate::equations::sag::share_above;
+use crate::equations::tendon::Tendon;
+use crate::io::Input;
 use crate::params::FiberType;
-use crate::passive::{Compression, Parallel};
-use crate::presets::{PAPER_MUSCLE, feline_vm4, human_vm4, paper_table_1};
-use crate::sag::share_above;
+use crate::params::presets::{PAPER_MUSCLE, feline_vm4, human_vm4, paper_table_1};
 use crate::scalar::Scalar;
 use crate::scalar::fixed::Fixed;
-use crate::tendon::Tendon;
-use crate::time_step::TimeStep;
+use crate::tick::lag::Lag;
+use crate::tick::time_step::TimeStep;
 
 const TYPES: [FiberType; 5] = [
     paper_table_1::SLOW,
@@ -312,7 +312,7 @@ fn the_share_of_a_tick_above_a_level_is_found_by_where_it_is_crossed() {
 
 #[test]
 fn the_readme_has_the_bounds_of_the_relations_and_their_sum() {
-    let readme = include_str!("../README.md");
+    let readme = include_str!("../../README.md");
     let mut rows = String::new();
     let mut sums = [0.0; 2];
     for (relation, [f32, fixed, _]) in BOUNDS {

@@ -1,12 +1,13 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
 use crate::checksum::summed;
-use crate::domain::{MAXIMUM_SPEED, Range};
 use crate::error::{ParameterError, within};
-use crate::lag::Lag;
+use crate::params::limits::MAXIMUM_SPEED;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
-use crate::state::{RestoreError, Saved};
-use crate::time_step::TimeStep;
+use crate::tick::lag::Lag;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
 
 /// Coefficients of yield.
 #[derive(Clone, Copy, Debug, PartialEq)]

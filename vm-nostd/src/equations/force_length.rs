@@ -149,7 +149,7 @@ impl<S: Scalar> ForceLength<S> {
 pub(crate) mod tests {
     use super::*;
     use crate::params::FASCICLE_DOMAIN;
-    use crate::presets::PAPER_MUSCLE;
+    use crate::params::presets::PAPER_MUSCLE;
     use crate::scalar::fixed::Fixed;
     use crate::{ContinuousMuscle, Input, TimeStep};
 

@@ -3,7 +3,7 @@
 use crate::checksum::summed;
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
-use crate::time_step::TimeStep;
+use crate::tick::time_step::TimeStep;
 
 /// `dy/dt = (target - y)/T`, exactly, over half a tick and over a tick.
 #[derive(Clone, Copy, Debug)]

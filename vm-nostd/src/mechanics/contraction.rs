@@ -14,20 +14,20 @@
 //! - Damping: the midpoint rule would leave velocity that damping has long consumed, to alternate
 //!   for ever. How much of it is left is taken from the slope of FV; see [`decay`].
 
-mod decay;
-
+use super::decay;
 use crate::checksum::summed;
-use crate::class::{Class, Substeps};
-use crate::domain::MAXIMUM_SPEED;
-use crate::force_velocity::VelocityCurve;
-use crate::muscle::Fiber;
+use crate::equations::force_velocity::VelocityCurve;
+use crate::equations::tendon::Tendon;
+use crate::equations::yielding::{SPREAD, Speed};
+use crate::fiber::Fiber;
 use crate::params::MuscleParams;
-use crate::recruitment::{Course, RecruitmentTick};
+use crate::params::class::{Class, Substeps};
+use crate::params::limits::MAXIMUM_SPEED;
+use crate::recruitment::RecruitmentTick;
 use crate::scalar::Scalar;
 use crate::scalar::float::{square_root, tangent};
-use crate::tendon::Tendon;
-use crate::time_step::TimeStep;
-use crate::yielding::{SPREAD, Speed};
+use crate::tick::course::Course;
+use crate::tick::time_step::TimeStep;
 
 /// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;
@@ -137,6 +137,9 @@ impl<S: Scalar> Substep<S> {
         }
     }
 }
+
+/// Name of a derived quantity that fixed point refuses.
+pub(crate) const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 
 /// Half the mass of a muscle, F0 s²/L_ce0.
 fn moving_mass<const N: usize>(params: &MuscleParams<N>) -> f64 {
@@ -339,7 +342,7 @@ fn least<S: Scalar, R: RecruitmentTick<S, N>, const N: usize>(passive: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::presets::PAPER_MUSCLE;
+    use crate::params::presets::PAPER_MUSCLE;
 
     #[test]
     fn a_taut_tendon_rings_at_its_own_phase() {

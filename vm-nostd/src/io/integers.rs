@@ -1,6 +1,6 @@
 //! Inputs in integer units.
 
-use crate::muscle::Input;
+use super::Input;
 use crate::scalar::fixed::Fixed;
 use fixed::types::{I16F16, I23F9};
 

@@ -2,10 +2,10 @@
 //! filaments.
 
 use crate::checksum::summed;
+use crate::equations::tendon::softplus_inverse;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
-use crate::tendon::softplus_inverse;
-use crate::time_step::TimeStep;
+use crate::tick::time_step::TimeStep;
 
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::{Lags, Scalar};
-use crate::time_step::TimeStep;
+use crate::tick::time_step::TimeStep;
 
 /// Time constants of excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Sag of fast fibres: dS/dt = (aS - S)/TS, aS = aS1 below f = 0.1 f0.5, else aS2.
 
 use crate::checksum::summed;
-use crate::domain::Range;
 use crate::error::{ParameterError, within};
-use crate::lag::Lag;
 use crate::scalar::Scalar;
-use crate::time_step::TimeStep;
+use crate::tick::lag::Lag;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
 
 /// Coefficients of sag.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,40 @@
+//! A fibre type of a muscle.
+
+use crate::checksum::summed;
+use crate::equations::activation_frequency::ActivationFrequency;
+use crate::equations::excitation::Excitation;
+use crate::equations::force_length::ForceLength;
+use crate::equations::force_velocity::ForceVelocity;
+use crate::equations::sag::Sag;
+use crate::equations::yielding::Yielding;
+use crate::params::FiberParams;
+use crate::scalar::Scalar;
+use crate::tick::time_step::TimeStep;
+
+/// The coefficients of one fibre type.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct Fiber<S: Scalar> {
+    pub(crate) excitation: Excitation<S>,
+    pub(crate) sag: Sag<S>,
+    pub(crate) yielding: Yielding<S>,
+    pub(crate) activation: ActivationFrequency<S>,
+    pub(crate) force_length: ForceLength<S>,
+    pub(crate) force_velocity: ForceVelocity<S>,
+}
+
+summed!([S: Scalar] Fiber<S> { excitation, sag, yielding, activation, force_length, force_velocity });
+
+impl<S: Scalar> Fiber<S> {
+    pub(crate) fn new(params: &FiberParams, domain: (f64, f64), step: TimeStep) -> Self {
+        let t = &params.fiber_type;
+        Self {
+            excitation: Excitation::new(&t.excitation, step),
+            sag: Sag::new(t.sag.as_ref(), step),
+            yielding: Yielding::new(t.yielding.as_ref(), step),
+            activation: ActivationFrequency::new(&t.activation),
+            force_length: ForceLength::new(&t.force_length, domain),
+            force_velocity: ForceVelocity::new(&t.force_velocity),
+        }
+    }
+}

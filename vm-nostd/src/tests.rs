@@ -1,0 +1,4 @@
+//! Tests across files.
+
+mod oracle;
+mod saturation;

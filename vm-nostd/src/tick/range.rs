@@ -1,0 +1,46 @@
+//! A closed range.
+
+use crate::checksum::{Summed, summed};
+use crate::scalar::Scalar;
+use core::ops::Add;
+
+/// A closed range.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct Range<S> {
+    pub(crate) least: S,
+    pub(crate) most: S,
+}
+
+summed!([S: Summed] Range<S> { least, most });
+
+impl<T: Copy + PartialOrd> Range<T> {
+    pub(crate) fn new((least, most): (f64, f64), nearest: impl Fn(f64) -> T) -> Self {
+        Self { least: nearest(least), most: nearest(most) }
+    }
+
+    /// The nearest value in the range, and whether that is another one; the least for
+    /// not-a-number.
+    pub(crate) fn clip(&self, value: T) -> (T, bool) {
+        let raised = if value > self.least { value } else { self.least };
+        let clipped = if raised < self.most { raised } else { self.most };
+        (clipped, clipped != value)
+    }
+
+    /// Whether a value is in the range or out of it by no more than rounding may take it.
+    pub(crate) fn about_contains(&self, value: T, rounding: T) -> bool
+    where
+        T: Add<Output = T>,
+    {
+        value + rounding >= self.least && value <= self.most + rounding
+    }
+
+    pub(crate) fn contains(&self, value: T) -> bool {
+        value >= self.least && value <= self.most
+    }
+}
+
+/// What a share may be.
+pub(crate) fn share<S: Scalar>() -> Range<S> {
+    Range { least: S::ZERO, most: S::ONE }
+}
