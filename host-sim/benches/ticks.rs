@@ -2,7 +2,7 @@
 //! only what one run says of one arithmetic relative to another counts.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use host_sim::link;
+use host_sim::model_muscle;
 use host_sim::reference::{self, Mode, Simulation};
 use host_sim::scenario::paper_muscle;
 use std::hint::black_box;
@@ -27,7 +27,7 @@ fn input<S: vm::Scalar>(tick: u32) -> vm::Input<S> {
 
 fn built<S: vm::Scalar, R: vm::Recruitment<S, FIBER_TYPES, Units = ()>>()
 -> (vm::Muscle<S, R, FIBER_TYPES>, vm::State<S, R, FIBER_TYPES>) {
-    let params = link::params(&paper_muscle());
+    let params = model_muscle::params(&paper_muscle());
     let muscle = vm::Muscle::build(&params, vm::TimeStep::MILLISECOND).expect("the paper's muscle");
     let state = muscle.rest(S::path_length(PATH)).expect("a resting length");
     (muscle, state)

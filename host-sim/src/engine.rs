@@ -1,6 +1,6 @@
 //! Runs a muscle over a trace of inputs, in any mode and arithmetic.
 
-use crate::link::{self, with_type_count};
+use crate::model_muscle::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Sample, Simulation, SolverError};
 use crate::trace::InputTrace;
 use std::rc::Rc;
@@ -62,7 +62,7 @@ pub enum RunError {
     #[error("{0} motor units: at most {most} are supported", most = MOST_UNITS)]
     UnitCount(usize),
     /// More fibre types than the host supports.
-    #[error("{0} fibre types: 1 to {most} are supported", most = link::MOST_TYPES)]
+    #[error("{0} fibre types: 1 to {most} are supported", most = model_muscle::MOST_TYPES)]
     TypeCount(usize),
 }
 
@@ -229,7 +229,7 @@ impl Rest<'_> {
         &self,
         mode: Mode,
     ) -> Result<Box<dyn Running>, RunError> {
-        let units = link::motor_units::<N, UNITS>(self.muscle)?;
+        let units = model_muscle::motor_units::<N, UNITS>(self.muscle)?;
         self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(mode, &units)
     }
 
@@ -240,10 +240,10 @@ impl Rest<'_> {
     ) -> Result<Box<dyn Running>, RunError> {
         let step = vm::TimeStep::from_seconds(self.time_step)?;
         let class = self.class.of_model();
-        let params = vm::MuscleParams { class, ..link::params(self.muscle) };
+        let params = vm::MuscleParams { class, ..model_muscle::params(self.muscle) };
         let muscle = vm::Muscle::<S, R, N>::build_with_units(&params, units, step)?;
         let state = muscle.rest(S::path_length(self.path_length))?;
-        let fatigue = self.muscle.fatigue.as_ref().map(link::fatigue_params);
+        let fatigue = self.muscle.fatigue.as_ref().map(model_muscle::fatigue_params);
         let tiring = fatigue
             .map(|params| {
                 let fatigue = vm::Fatigue::<S>::build(&params, step)?;

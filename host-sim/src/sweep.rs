@@ -2,10 +2,12 @@
 //! that can be gone on with after an interruption.
 
 mod case;
+mod keys;
 mod space;
 
 pub use case::{Case, Measured};
-pub use space::{KEYS, Key, Space, SpaceError, Variation};
+pub use keys::{KEYS, Key};
+pub use space::{Space, SpaceError, Variation};
 
 use crate::engine::{self, Arithmetic, Class};
 use crate::golden;

@@ -3,8 +3,8 @@
 
 use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};
-use host_sim::link;
 use host_sim::metrics::{ForceError, forces};
+use host_sim::model_muscle;
 use host_sim::reference::{Input, Mode, Muscle};
 use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
@@ -74,7 +74,7 @@ fn fes_from_a_path_of_33_3_cm_with_32_9_cm_as_the_longest() {
 #[test]
 fn the_domain_ends_where_no_activation_keeps_the_fascicles_where_n_f_is_defined() {
     let muscle = paper_muscle();
-    let (_, longest) = link::path_domain(&muscle);
+    let (_, longest) = model_muscle::path_domain(&muscle);
     assert!(longest > muscle.L_mt_max + 0.01, "{longest}");
     let (_, most) = MUSCLE.fascicle_domain();
     // At rest the fascicles are beyond it, which is flagged; passive forces are valid throughout.

@@ -2,7 +2,7 @@
 
 use host_sim::coefficients;
 use host_sim::engine::{self, Arithmetic};
-use host_sim::link;
+use host_sim::model_muscle;
 use host_sim::reference::{Input, Mode};
 use host_sim::scenario::{paper_muscle, paper_muscle_of_units};
 use host_sim::trace::InputTrace;
@@ -70,7 +70,7 @@ fn the_paper_muscle_has_the_published_force_and_length() {
     assert!((muscle.f0() - 265.909).abs() < 5e-4, "F0 = {} N", muscle.f0());
     let longest = muscle.maximum_fascicle_length();
     assert!((longest - 1.498750).abs() < 5e-7, "L_max = {longest}");
-    let params = link::params::<2>(&muscle);
+    let params = model_muscle::params::<2>(&muscle);
     assert!((params.max_isometric_force() - muscle.f0()).abs() < 1e-9);
     assert!((params.maximum_fascicle_length() - longest).abs() < 1e-9);
 }
@@ -92,7 +92,7 @@ fn presets_are_the_published_tables() {
     for ((name, row), (preset_name, preset)) in rows.iter().zip(fibers) {
         assert_eq!(name, preset_name);
         let published = coefficients::fiber_type(row).expect("a full row");
-        assert_eq!(link::fiber_type(&published), preset, "{name}");
+        assert_eq!(model_muscle::fiber_type(&published), preset, "{name}");
     }
     let elements: [(&str, ElementParams); 3] = [
         ("paper-table-1", paper_table_1::ELEMENTS),
@@ -102,6 +102,6 @@ fn presets_are_the_published_tables() {
     assert_eq!(coefficients::element_rows().len(), elements.len());
     for (name, preset) in elements {
         let published = coefficients::elements(name).expect("a published set");
-        assert_eq!(link::element_params(&published), preset, "{name}");
+        assert_eq!(model_muscle::element_params(&published), preset, "{name}");
     }
 }

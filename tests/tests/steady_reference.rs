@@ -2,7 +2,7 @@
 //! force.
 
 use host_sim::engine::{self, Arithmetic};
-use host_sim::link;
+use host_sim::model_muscle;
 use host_sim::reference::{Input, Mode, Muscle};
 use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
@@ -40,7 +40,7 @@ fn force<S: Scalar>(newtons: f64) -> S::Force {
 fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
     let muscle = paper_muscle();
     let f0 = muscle.f0();
-    let steady = SteadyFes::<S, 2>::build(&link::params(&muscle)).expect("a muscle");
+    let steady = SteadyFes::<S, 2>::build(&model_muscle::params(&muscle)).expect("a muscle");
     let (mut forward, mut inverse) = (0.0_f64, 0.0_f64);
     for &(activation, path, frequency, reference) in references {
         let found = steady.force(input(activation, path, frequency));

@@ -160,7 +160,7 @@ impl File {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link;
+    use crate::model_muscle;
 
     #[test]
     fn muscles_are_valid_and_as_strong_as_published() {
@@ -168,7 +168,7 @@ mod tests {
         let forces = [838.0, 1207.0, 1422.0, 1549.0, 414.0, 603.0];
         assert_eq!(arm.muscles.len(), forces.len());
         for (muscle, force) in arm.muscles.iter().zip(forces) {
-            assert_eq!(link::validate(&muscle.muscle), Ok(()), "{}", muscle.name);
+            assert_eq!(model_muscle::validate(&muscle.muscle), Ok(()), "{}", muscle.name);
             assert!((muscle.muscle.f0() - force).abs() < 1e-9, "{}", muscle.name);
         }
     }

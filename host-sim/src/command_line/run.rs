@@ -2,7 +2,7 @@
 
 use super::ModeName;
 use crate::engine::{self, Arithmetic, Class};
-use crate::link;
+use crate::model_muscle;
 use crate::muscles::find;
 use crate::reference::Muscle;
 use crate::trace::{self, InputTrace, OutputRow};
@@ -111,7 +111,7 @@ pub(super) fn check_run(
             return Err(format!("--output {output}: must be another file than {read}'s").into());
         }
     }
-    let (shortest, longest) = link::path_domain(muscle);
+    let (shortest, longest) = model_muscle::path_domain(muscle);
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
         let problem = format!(

@@ -2,14 +2,12 @@
 
 use super::case::{Case, Subject};
 use super::core::Core;
-use super::report::{Row, Share};
+use super::row::{MARGIN, Row, Share};
 use crate::engine::Arithmetic;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
 const BUDGETS: &str = include_str!("../../data/budgets.toml");
-/// What the timing model may be short of hardware by.
-pub const MARGIN: f64 = 1.05;
 /// A budget of which less than this share is used is stale.
 const USED: f64 = 0.8;
 

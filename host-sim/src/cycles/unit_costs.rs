@@ -3,7 +3,7 @@
 
 use super::case::{Case, Subject};
 use super::core::Core;
-use super::report::Row;
+use super::row::Row;
 use crate::engine::{self, Arithmetic};
 use crate::reference::Mode;
 use serde::{Deserialize, Serialize};

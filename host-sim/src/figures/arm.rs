@@ -1,6 +1,7 @@
 //! Figure 3: the planar arm under constant activations, with and without effective length.
 
-use super::{Figures, FiguresError, TIME_STEP};
+use super::files::{Figures, FiguresError};
+use super::setting::TIME_STEP;
 use crate::arm::{self, Activations, Arm, Drive, Moment, Outcome};
 use crate::chart::{Chart, Line, Panel};
 use crate::engine::Arithmetic;

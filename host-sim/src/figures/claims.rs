@@ -1,28 +1,9 @@
 //! Claims of the paper, with measured numbers.
 
+use super::claim::Claim;
 use super::computation::{self, Costs};
 use super::sinusoids::{self, Swing};
 use crate::arm::Outcome;
-use serde::Serialize;
-
-/// A claim of the paper's section 3.
-#[derive(Clone, Debug, Serialize)]
-pub struct Claim {
-    /// Figure of the claim.
-    pub figure: &'static str,
-    /// The claim.
-    pub claim: &'static str,
-    /// The claimed number.
-    pub claimed: &'static str,
-    /// Limit of the number; ours if the paper gives none.
-    pub limit: String,
-    /// Measured number.
-    pub measured: String,
-    /// Whether it is within the limit.
-    pub agrees: bool,
-    /// Reason if it is not.
-    pub why: &'static str,
-}
 
 /// Least and greatest of some numbers.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {

@@ -2,7 +2,7 @@
 //!
 //! They are counted by `vm cycles`, which needs QEMU, and kept in `data/computation.csv`.
 
-use super::{Figures, FiguresError};
+use super::files::{Figures, FiguresError};
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::cycles::UnitCost;
 

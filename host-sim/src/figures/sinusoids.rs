@@ -1,7 +1,8 @@
 //! Figures 5 and 6: sinusoids of activation (0 to 1) and of path length (14 to 18 cm), 1 to 10 Hz,
 //! with continuous and with discrete recruitment, and with effective length.
 
-use super::{Case, Figures, FiguresError, PATH, TIME_STEP, cases};
+use super::files::{Figures, FiguresError};
+use super::setting::{Case, PATH, TIME_STEP, cases};
 use crate::chart::{Chart, Line, Panel};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::metrics::ForceError;

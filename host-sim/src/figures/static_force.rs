@@ -1,6 +1,7 @@
 //! Figure 4: steady force by activation, over the full range and at the start of recruitment.
 
-use super::{Case, Figures, FiguresError, PATH, TIME_STEP, cases};
+use super::files::{Figures, FiguresError};
+use super::setting::{Case, PATH, TIME_STEP, cases};
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::reference::{Input, Mode, Muscle};

@@ -1,6 +1,6 @@
 //! A fit from files to results: parameters with their uncertainty, and every trial with the model.
 
-use super::FitError;
+use super::error::FitError;
 use super::problem::Problem;
 use super::solve::Search;
 use super::statistics::{Estimate, Pair, statistics};

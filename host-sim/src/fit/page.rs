@@ -1,6 +1,7 @@
 //! A fit as one HTML page that needs no network.
 
 use super::outcome::{Fit, TrialFit};
+use super::trials::Role;
 use crate::chart::{Chart, Line, Panel};
 use askama::Template;
 
@@ -93,8 +94,8 @@ fn plot(trial: &TrialFit) -> String {
         Line::new(name, trial.times.iter().copied().zip(forces.iter().copied()))
     };
     let role = match trial.role {
-        super::Role::Fit => "fitted",
-        super::Role::Predict => "predicted",
+        Role::Fit => "fitted",
+        Role::Predict => "predicted",
     };
     let errors: Vec<f64> =
         trial.model.iter().zip(&trial.measured).map(|(model, force)| model - force).collect();

@@ -1,7 +1,7 @@
 //! Free parameters: place, bounds and prior.
 
 use super::keys::{self, Key};
-use crate::link;
+use crate::model_muscle;
 use crate::reference::Muscle;
 use serde::Deserialize;
 
@@ -102,7 +102,7 @@ pub fn admitted(muscle: &Muscle, key: &Key) -> Option<(f64, f64)> {
     let valid = |value: f64| {
         let mut other = muscle.clone();
         key.set(&mut other, value);
-        link::validate(&other).is_ok()
+        model_muscle::validate(&other).is_ok()
     };
     let edge = |direction: f64| {
         let (mut inside, mut step) = (start, 0.1 * start.abs().max(1e-3));

@@ -1,6 +1,6 @@
 //! The model held against the recordings: forces, residuals and their derivatives.
 
-use super::FitError;
+use super::error::FitError;
 use super::parameters::{Parameter, Place, applied};
 use super::trials::{Drive, Role, Trial, Trials};
 use crate::engine::{self, Arithmetic, RunError};

@@ -1,7 +1,7 @@
 //! A signal of a trial: constant, steps or a recording, with a scale and an offset that may be
 //! free.
 
-use super::FitError;
+use super::error::FitError;
 use super::recording::{Column, Recording, Source};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! The search: Levenberg and Marquardt's method from several starts, on all cores.
 
-use super::FitError;
+use super::error::FitError;
 use super::problem::Problem;
 use crate::progress;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};

@@ -1,6 +1,6 @@
 //! The list of recordings and free parameters, `TRIALS.toml`; its shape is in `docs/trials.md`.
 
-use super::FitError;
+use super::error::FitError;
 use super::keys::{self, Key};
 use super::parameters::{Parameter, Place, Prior, admitted};
 use super::priors;

@@ -2,7 +2,7 @@
 
 use crate::engine::{self, Arithmetic};
 use crate::hil::{Client, HilError, Line};
-use crate::link;
+use crate::model_muscle;
 use crate::reference::{self, Muscle, Sample};
 use crate::trace::InputTrace;
 use firmware::TYPES;
@@ -93,7 +93,7 @@ pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError
             return unfit("mode", engine::mode_name(other).to_owned(), limit);
         }
     };
-    Ok(Upload { mode, muscle: link::params(muscle), electrode: None })
+    Ok(Upload { mode, muscle: model_muscle::params(muscle), electrode: None })
 }
 
 /// Sends the next message of rows, or listens if the device has no room.

@@ -1,6 +1,6 @@
 //! The recruitment curve of an electrode, as it stands in a muscle file or a list of trials.
 
-use crate::link::in_file_unit;
+use crate::model_muscle::in_file_unit;
 use serde::Deserialize;
 use vm_nostd::{Limit, RecruitmentCurveParams};
 

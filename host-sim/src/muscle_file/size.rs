@@ -1,6 +1,6 @@
 //! Strength of a muscle: its mass or its maximal isometric force.
 
-use super::Refusal;
+use super::refusal::Refusal;
 use crate::reference::Muscle;
 
 /// A mass that is always valid, kg.

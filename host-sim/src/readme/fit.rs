@@ -1,6 +1,6 @@
 //! The front page's "does it fit?": one row per core and arithmetic.
 
-use super::ReadmeError;
+use super::place::ReadmeError;
 use crate::cycles::Core;
 use crate::engine::Class;
 use crate::tolerance;

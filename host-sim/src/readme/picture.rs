@@ -1,6 +1,6 @@
 //! The front page's picture: force over time under FES, as the model computes it in `f32`.
 
-use super::ReadmeError;
+use super::place::ReadmeError;
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::engine::{self, Arithmetic};
 use crate::reference::{Input, Mode};

@@ -66,6 +66,11 @@ impl Setting {
 }
 
 impl Bout {
+    /// The file of its inputs, as `vm run` and `vm hil` take it.
+    pub fn file_name(&self) -> String {
+        format!("{}.csv", self.name)
+    }
+
     /// For how long the muscle is driven, s.
     pub fn driven(&self) -> f64 {
         let ends = self.level.iter().skip(1).map(|step| step.0).chain([self.seconds]);

@@ -1,7 +1,6 @@
 //! The list of recordings of a protocol, as `vm fit` takes it, and what is free in it.
 
 use super::bout::{Bout, Setting, Steps};
-use super::protocol::file_name;
 use crate::engine::mode_name;
 use crate::fit::{Basis, Key, spread};
 use crate::muscle_file::NamedMuscle;
@@ -102,7 +101,7 @@ fn text(named: &NamedMuscle, mode: Mode, bouts: &[Bout]) -> Result<String, std::
     writeln!(text, "# Recordings of the protocol of vm protocol; force goes into {RECORDED}.")?;
     writeln!(text, "noise_pct_f0 = 1\ntime_step_ms = 2")?;
     for bout in bouts {
-        let (name, file) = (bout.name, file_name(bout));
+        let (name, file) = (bout.name, bout.file_name());
         writeln!(text, "\n[[trial]]\nname = \"{name}\"\nrole = \"{}\"", bout.role.name())?;
         writeln!(text, "mode = \"{}\"", mode_name(mode))?;
         let recorded = format!("file = \"{RECORDED}/{file}\", time = \"t_s\"");

@@ -4,7 +4,7 @@ use super::bout::{Bout, Setting};
 use super::list::{Free, OFFSET};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::fit::{Parameter, Place, applied};
-use crate::link;
+use crate::model_muscle;
 use crate::muscle_file::NamedMuscle;
 use crate::muscle_file::curve::{self, CURVE};
 use crate::reference::{Mode, Muscle};
@@ -86,7 +86,7 @@ impl Patient {
         let paths = bouts.iter().flat_map(|bout| bout.path.iter().map(|point| point.1));
         let (least, most) = paths.fold((0.0_f64, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
         let longest = self.muscle.maximum_fascicle_length();
-        link::validate(&self.muscle).is_ok()
+        model_muscle::validate(&self.muscle).is_ok()
             && (LONGEST.0..=LONGEST.1).contains(&longest)
             && self.curve.is_none_or(|curve| curve.validate().is_ok())
             && [least, most]

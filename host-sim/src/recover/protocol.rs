@@ -150,11 +150,6 @@ pub fn stimulated(bouts: &[Bout]) -> f64 {
     bouts.iter().filter(|bout| bout.role == Role::Fit).map(Bout::driven).sum()
 }
 
-/// The file of a bout's inputs, as `vm run` and `vm hil` take it.
-pub fn file_name(bout: &Bout) -> String {
-    format!("{}.csv", bout.name)
-}
-
 /// Writes the inputs of a protocol into a folder, and the list of recordings that `vm fit` takes
 /// when they are there.
 pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), WriteError> {
@@ -168,7 +163,7 @@ pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), Write
             let (activation, pps) = (input.activation, input.stimulation_frequency);
             writeln!(text, "{time:.3},{activation:.6},{path:.7},{pps}").expect("a string grows");
         }
-        write_atomically(&folder.join(file_name(bout)), text.as_bytes())?;
+        write_atomically(&folder.join(bout.file_name()), text.as_bytes())?;
     }
     write_atomically(&folder.join("trials.toml"), list(named, mode, &bouts).as_bytes())?;
     Ok(())

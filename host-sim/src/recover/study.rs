@@ -3,7 +3,7 @@
 use super::bout::{Bout, Setting};
 use super::list::{Free, RECORDED, free};
 use super::patient::{Patient, STRIDE};
-use super::protocol::{self, bouts, file_name};
+use super::protocol::{self, bouts};
 use crate::engine::mode_name;
 use crate::fit::{Fit, Role, Search, Start, Trials, fit};
 use crate::golden;
@@ -166,7 +166,7 @@ impl Study {
                 let force = if bout.role == Role::Fit { patient.reading(force) } else { force };
                 writeln!(text, "{time:.3},{force:.6}").expect("a string grows");
             }
-            let file = folder.join(RECORDED).join(file_name(&bout));
+            let file = folder.join(RECORDED).join(bout.file_name());
             write_atomically(&file, text.as_bytes()).map_err(said)?;
         }
         Ok(())

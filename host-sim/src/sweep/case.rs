@@ -1,9 +1,9 @@
 //! A case: muscle, inputs, and the error of every arithmetic.
 
-use super::space::KEYS;
+use super::keys::KEYS;
 use crate::engine::{self, Arithmetic, Class};
-use crate::link;
 use crate::metrics::{ForceError, forces};
+use crate::model_muscle;
 use crate::muscle_file;
 use crate::reference::{Input, Mode, Muscle};
 use crate::trace::InputTrace;
@@ -73,7 +73,8 @@ impl Case {
         let swing = speed / (TAU * path_hz) * fascicle;
         let time_step = self.value("tick_ms") * 1e-3;
         // The path is limited to the muscle's domain.
-        let end = self.muscle().map_or(longest * 1e-2, |muscle| link::path_domain(&muscle).1);
+        let end =
+            self.muscle().map_or(longest * 1e-2, |muscle| model_muscle::path_domain(&muscle).1);
         let input = |tick: usize| {
             let time = tick as f64 * time_step;
             let activation = 0.5 * (from + to) + 0.5 * (from - to) * (TAU * hz * time).cos();
