@@ -12,22 +12,24 @@
 //!
 //! The same image runs in QEMU, whose chip has no clock control: [`is_emulated`] tells them apart.
 
+mod chip;
 mod memory;
 mod noise;
 mod watchdog;
 
+use chip::{CORE_CLOCK, is_emulated};
+pub use chip::{pac, reset};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 use firmware::flash::Flash;
 use firmware::safety::{CHANNELS, Fault};
-use firmware::{Bridge, OutputStage, Pulses, Scale};
+use firmware::{Bridge, OutputStage, Pulses};
 pub use memory::{EmulatedFlash, Memory};
 pub use noise::Numbers;
 use stm32f4xx_hal::gpio::{ErasedPin, Output, PushPull, Speed};
 use stm32f4xx_hal::nb;
-pub use stm32f4xx_hal::pac;
-use stm32f4xx_hal::pac::{RCC, SPI1, TIM2, USART1};
+use stm32f4xx_hal::pac::{SPI1, TIM2, USART1};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{self, Rcc};
 use stm32f4xx_hal::serial::{Config, Rx, Serial, Tx};
@@ -41,14 +43,10 @@ pub type Converter = ExclusiveDevice<Spi<SPI1>, Pin, NoDelay>;
 /// The output stage.
 pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
-/// Current source: 50 mA at 4095 counts.
-pub const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
 /// Baud rate of the link. A byte takes longer than the tick that may delay its interrupt: none is
 /// lost.
 const BAUD: u32 = 115_200;
 
-/// Core clock of the part and of the emulator, Hz.
-const CORE_CLOCK: u32 = 168_000_000;
 /// The emulator's TIM2 counts ns.
 const EMULATED_TIMER_CLOCK: u32 = 1_000_000_000;
 
@@ -72,12 +70,6 @@ pub struct Board {
     pub numbers: Numbers,
     /// Cause of the boot.
     pub boot: Fault,
-}
-
-/// Whether this is QEMU, whose reset and clock control reads 0. On a real part a bit of the PLL
-/// configuration is always 1.
-fn is_emulated(rcc: &RCC) -> bool {
-    rcc.cr().read().bits() == 0 && rcc.pllcfgr().read().bits() == 0
 }
 
 impl Board {
@@ -199,11 +191,6 @@ impl ToHost {
     pub fn write(&mut self, byte: u8) {
         let _it_was_ready = self.0.write(byte);
     }
-}
-
-/// Resets the chip: everything is off at boot.
-pub fn reset() -> ! {
-    cortex_m::peripheral::SCB::sys_reset()
 }
 
 /// Timer of the schedule's steps.

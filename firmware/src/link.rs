@@ -7,10 +7,19 @@
 //! next sequence number and a complete message is acted upon; everything else is counted and
 //! answered with a [`LinkError`].
 
+mod error;
+pub mod flash;
+pub(crate) mod flash_times;
 mod frame;
 mod message;
+pub(crate) mod ram;
+pub(crate) mod randomness;
+pub(crate) mod server;
 mod session;
+pub(crate) mod storage;
+pub(crate) mod uploads;
 
+pub use error::{Counters, LinkError};
 pub use frame::{
     Frame, MOST_CONTENT, MOST_FRAME, NO_SESSION, Receiver, SessionNumber, VERSION, encode,
 };
@@ -18,4 +27,4 @@ pub use message::{
     Answer, Electrode, Info, MOST_ROWS, MOST_WORDS, Message, Mode, Readings, Refusal, Report,
     Request, RowInputs, RowOutputs, Traced, Upload,
 };
-pub use session::{Counters, LinkError, Session};
+pub use session::Session;

@@ -16,13 +16,13 @@ mod fault_handlers;
 mod app {
     use crate::board::{
         self, Board, Converter, EmulatedFlash, FromHost, Memory, Numbers, Pin, PulseTimer,
-        Received, SCALE, TickTimer, ToHost, Watchdog, pac,
+        Received, TickTimer, ToHost, Watchdog, pac,
     };
     use defmt_rtt as _;
     use firmware::safety::Fault;
     use firmware::{
         Banks, Controller, Deadline, Device, Limits, LinkQueues, Permission, PlanQueue, Pulses,
-        Server, ServerRoom, TICK_US,
+        SCALE, Server, ServerRoom, TICK_US,
     };
     use heapless::spsc::{Consumer, Producer, Queue};
     use vm_nostd::TimeStep;

@@ -1,7 +1,8 @@
 //! Non-volatile storage: the last two sectors of flash.
 
-use super::{CORE_CLOCK, watchdog};
-use crate::board::pac::{DWT, FLASH};
+use super::chip::CORE_CLOCK;
+use super::chip::pac::{DWT, FLASH};
+use super::watchdog;
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };

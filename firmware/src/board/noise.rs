@@ -1,6 +1,6 @@
 //! The random number generator, which runs on the 48 MHz of the main PLL.
 
-use super::pac::RNG;
+use super::chip::pac::RNG;
 use firmware::{Noise, NoiseGenerator, NoiseStatus, PollCount, Randomness};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 

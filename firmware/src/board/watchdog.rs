@@ -1,7 +1,7 @@
 //! The independent watchdog.
 
-use super::pac::IWDG;
-use super::reset;
+use super::chip::pac::IWDG;
+use super::chip::reset;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use firmware::watchdog::{self, MOST_CHANGE_MS, Patience, WatchdogRegisters};
 

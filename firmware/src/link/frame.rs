@@ -1,6 +1,6 @@
 //! Framing: COBS, CRC, version and sequence number.
 
-use crate::link::LinkError;
+use super::error::LinkError;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
 use serde::Serialize;

@@ -1,11 +1,13 @@
 //! Messages between host and device. Appending to an enumeration keeps the version; any other
 //! change raises it.
 
-use crate::configuration::{MUSCLES, TYPES};
-use crate::link::{Counters, LinkError, SessionNumber};
-use crate::safety::{CHANNELS, Fault, NotArmed, State};
-use crate::stimulus::{Stimulus, StimulusError};
-use crate::storage::NotStored;
+use super::error::{Counters, LinkError};
+use super::frame::SessionNumber;
+use crate::between::fault::Fault;
+use crate::between::stimulus::{Stimulus, StimulusError};
+use crate::config::{CHANNELS, MUSCLES, TYPES};
+use crate::hard_tick::safety::{NotArmed, State};
+use crate::link::storage::NotStored;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 use vm_nostd::{Limit, MuscleParams, ParameterError, RecruitmentCurveParams};
