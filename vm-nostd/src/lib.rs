@@ -97,8 +97,11 @@
 //!
 //! # Features
 //!
-//! `serde`: parameters to and from any of its formats. They are validated when a muscle is built,
-//! not when they are read. The default is none.
+//! - `serde`: parameters to and from any of its formats. They are validated when a muscle is built,
+//!   not when they are read.
+//! - `defmt`: [`Input`], [`Output`], [`Status`] and [`ParameterError`] implement `defmt::Format`.
+//!
+//! The default is none.
 //!
 //! # Source
 //!
@@ -109,11 +112,14 @@
 mod bank;
 mod beyond_paper;
 mod checksum;
+mod curves;
 mod domain;
 mod equations;
 mod error;
 mod fiber;
 mod io;
+#[cfg(feature = "defmt")]
+mod logging;
 mod mechanics;
 mod muscle;
 mod params;
@@ -133,6 +139,7 @@ pub use beyond_paper::recruitment_curve::{
 };
 pub use beyond_paper::steady::{Steady, SteadyFes};
 pub use checksum::Checksum;
+pub use curves::{Curves, FiberCurves};
 pub use equations::activation_frequency::ActivationParams;
 pub use equations::excitation::ExcitationParams;
 pub use equations::force_length::ForceLengthParams;

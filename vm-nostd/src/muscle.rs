@@ -39,13 +39,13 @@ pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
 /// All that changes is in its [`State`], so that one muscle can serve several states.
 #[derive(Clone, Copy, Debug)]
 pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
-    domain: Domain<S>,
+    pub(crate) domain: Domain<S>,
     recruitment: R::Coefficients,
-    optimal_length: OptimalLength<S>,
-    fibers: [Fiber<S>; N],
-    parallel: Parallel<S>,
-    compression: Compression<S>,
-    contraction: Contraction<S>,
+    pub(crate) optimal_length: OptimalLength<S>,
+    pub(crate) fibers: [Fiber<S>; N],
+    pub(crate) parallel: Parallel<S>,
+    pub(crate) compression: Compression<S>,
+    pub(crate) contraction: Contraction<S>,
     /// F0.
     force: S::Factor,
     max_isometric_force: S::Force,
@@ -97,6 +97,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             force: S::force_factor(params.max_isometric_force()),
             tick_rate: S::factor(1.0 / step.seconds()),
         })
+    }
+
+    /// The muscle at rest on a path of so many metres, in any arithmetic; see
+    /// [`rest`](Self::rest). Fixed point takes the nearest 1/512 µm.
+    pub fn rest_at_metres(&self, path_length: f64) -> Result<State<S, R, N>, ParameterError> {
+        let refused = |error| ParameterError { value: path_length, ..error };
+        self.rest(S::path_length(path_length)).map_err(refused)
     }
 
     /// The muscle at rest on a path of `path_length`: not activated, not moving, tendon and

@@ -230,10 +230,27 @@ proptest! {
     }
 }
 
+/// A muscle at rest on a path in metres, against the path in the arithmetic's own type.
+fn rests_on_metres<S: Scalar>() {
+    let muscle = FesMuscle::<S, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
+    assert_eq!(muscle.rest_at_metres(0.16), muscle.rest(S::path_length(0.16)));
+    for path in [-1.0, 0.0, 0.05, 9.0, f64::INFINITY, f64::NAN] {
+        let refusal = muscle.rest_at_metres(path).expect_err("out of range");
+        assert_eq!((refusal.field, refusal.value.to_bits()), ("path_length", path.to_bits()));
+    }
+}
+
+#[test]
+fn a_muscle_of_any_arithmetic_is_put_at_rest_on_metres() {
+    rests_on_metres::<f32>();
+    rests_on_metres::<Fixed>();
+    rests_on_metres::<f64>();
+}
+
 #[test]
 fn states_that_no_tick_leaves_are_refused() {
     let muscle = FesMuscle::<Fixed, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
-    let state = muscle.rest(Fixed::path_length(0.16)).expect("a path in range");
+    let state = muscle.rest_at_metres(0.16).expect("a path in range");
     let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
     // Word 0 is the fingerprint. Word 4 multiplied F_pe2, 5 and 6 are the speed, 7 and 8 the gains,

@@ -1,0 +1,122 @@
+//! The public curves of a built muscle against the paper's equations in `f64`.
+
+use firmware::MUSCLE;
+use vm_nostd::{ContinuousMuscle, FiberType, Fixed, Scalar, TimeStep};
+
+/// Largest errors in `f32`, in fixed point and in `f64`: those of the README's table of error
+/// bounds, which the kernels' tests hold. The tendon has what fascicles leave of a path: one ULP of
+/// a length of 0.9 L_ce0, 6e-8, is 9e-6 F0 of this muscle's tendon, whose stiffness is 152 F0/L_ce0;
+/// two lengths are rounded in `f32`, one in fixed point.
+const BOUNDS: [(&str, [f64; 3]); 6] = [
+    ("F_se", [1.8e-5, 9e-6, 4e-14]),
+    ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
+    ("F_pe2", [7.4e-7, 4e-7, 3.3e-15]),
+    ("FL", [1.9e-6, 1.8e-6, 1.8e-6]),
+    ("FV", [9.7e-7, 2.8e-6, 3.1e-15]),
+    ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
+];
+
+/// A number that every arithmetic has.
+fn shared(value: f64) -> f64 {
+    (value * 1_048_576.0).round() / 1_048_576.0
+}
+
+fn softplus(x: f64) -> f64 {
+    (x.exp() + 1.0).ln()
+}
+
+fn papers_fl(t: &FiberType, l: f64) -> f64 {
+    let p = &t.force_length;
+    (-((l.powf(p.skewness) - 1.0) / p.width).abs().powf(p.roundness)).exp()
+}
+
+fn papers_fv(t: &FiberType, l: f64, v: f64) -> f64 {
+    let p = &t.force_velocity;
+    let [c0, c1] = p.shortening;
+    let [a0, a1, a2] = p.lengthening;
+    if v <= 0.0 {
+        ((p.maximum_velocity - v) / (p.maximum_velocity + (c0 + c1 * l) * v)).max(0.0)
+    } else {
+        let b = p.lengthening_velocity;
+        (b - (a0 + a1 * l + a2 * l * l) * v) / (b + v)
+    }
+}
+
+fn papers_af(t: &FiberType, l: f64, f: f64) -> f64 {
+    let p = &t.activation;
+    let n = p.exponent + p.length_dependence * (1.0 / l - 1.0);
+    1.0 - (-(f / (p.scale * n)).powf(n)).exp()
+}
+
+/// Largest errors of the six curves, relative where a curve exceeds 1.
+fn worst<S: Scalar>() -> [f64; 6] {
+    let muscle = ContinuousMuscle::<S, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
+    let curves = muscle.curves();
+    let mut worst = [0.0; 6];
+    let mut see = |curve: usize, found: S, exact: f64| {
+        let off = (found.to_f64() - exact).abs() / exact.abs().max(1.0);
+        assert!(off.is_finite(), "{}: {found:?} {exact}", BOUNDS[curve].0);
+        worst[curve] = f64::max(worst[curve], off);
+    };
+    let (e, longest) = (&MUSCLE.elements, MUSCLE.maximum_fascicle_length());
+    let (shortest, most) = MUSCLE.fascicle_domain();
+    let number = S::from_f64;
+    for step in 1..200 {
+        let l = shared(shortest + (most - shortest) * f64::from(step) / 200.0);
+        let (p, c) = (&e.parallel, &e.compression);
+        let f_pe1 = p.stiffness * p.toe * softplus((l / longest - p.slack_length) / p.toe);
+        see(1, curves.passive(number(l)), f_pe1);
+        let f_pe2 = (c.strength * ((c.steepness * (l - c.onset_length)).exp() - 1.0)).min(0.0);
+        see(2, curves.compression(number(l)), f_pe2);
+        for (index, fiber) in MUSCLE.fibers.iter().enumerate() {
+            let (t, of_type) = (&fiber.fiber_type, curves.fiber(index).expect("a type"));
+            see(3, of_type.force_length(number(l)), papers_fl(t, l));
+            for part in 0..=100 {
+                let v = shared(-8.0 + 0.16 * f64::from(part));
+                // Nearer to its pole, which the range ends at, FV magnifies the rounding of L.
+                if l > shortest + 0.05 {
+                    see(4, of_type.force_velocity(number(l), number(v)), papers_fv(t, l, v));
+                }
+                let f = shared(0.04 * f64::from(part));
+                see(5, of_type.activation_frequency(number(l), number(f)), papers_af(t, l, f));
+            }
+        }
+    }
+    // A slack tendon to one at F0, at any fascicle length.
+    let t = &e.tendon;
+    for step in 0..=100 {
+        let (l, stretch) = (shared(0.9), 0.9 + 0.15 * f64::from(step) / 100.0);
+        let path = S::path_length(l * MUSCLE.fascicle_length + stretch * MUSCLE.tendon_length);
+        let stretch = (S::path_metres(path) - l * MUSCLE.fascicle_length) / MUSCLE.tendon_length;
+        let f_se = t.stiffness * t.toe * softplus((stretch - t.slack_length) / t.toe);
+        see(0, curves.tendon(path, number(l)), f_se);
+    }
+    assert!(curves.fiber(2).is_none());
+    worst
+}
+
+#[test]
+fn the_curves_of_a_muscle_are_the_papers() {
+    let worst = [worst::<f32>(), worst::<Fixed>(), worst::<f64>()];
+    for (curve, (name, bounds)) in BOUNDS.into_iter().enumerate() {
+        for (worst, bound) in worst.iter().zip(bounds) {
+            assert!(worst[curve] <= bound, "{name}: {:e} > {bound:e}", worst[curve]);
+        }
+    }
+}
+
+#[test]
+fn beyond_their_ranges_curves_are_clamped() {
+    let muscle = ContinuousMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("valid");
+    let of_type = muscle.curves().fiber(1).expect("a type");
+    let (shortest, longest) = MUSCLE.fascicle_domain();
+    for (beyond, edge) in [(0.0, shortest as f32), (9.0, longest as f32)] {
+        assert_eq!(of_type.force_length(beyond), of_type.force_length(edge));
+        assert_eq!(of_type.force_velocity(beyond, -1.0), of_type.force_velocity(edge, -1.0));
+        let activation = |length| of_type.activation_frequency(length, 1.0);
+        assert_eq!(activation(beyond), activation(edge));
+    }
+    assert_eq!(of_type.force_velocity(1.0, -1e9), 0.0);
+    assert_eq!(of_type.force_velocity(1.0, 1e9), of_type.force_velocity(1.0, 60.0));
+    assert_eq!(of_type.activation_frequency(1.0, -1.0), 0.0);
+}
