@@ -1,0 +1,203 @@
+"""What the page does, and that its numbers are those of `vm run`."""
+
+import os
+import subprocess
+import time
+
+import pytest
+from conftest import OUTPUTS, ROOT
+from selenium.webdriver.common.keys import Keys
+
+NAMES = ["continuous", "fes", "discrete", "discrete-leff"]
+ARITHMETICS = ["f32", "fixed", "f64"]
+
+
+def assert_same(rows, expected):
+    """The same outputs, row by row, to the digits that `vm run` writes: of f32, all bits."""
+    assert len(rows) == len(expected)
+    for row, other in zip(rows, expected):
+        assert [float(row[name]) for name in OUTPUTS] == [float(other[name]) for name in OUTPUTS]
+        assert row["status"] == other["status"]
+
+
+def named(page, name):
+    options = page.element("muscle").find_elements("tag name", "option")
+    page.choose("muscle", [option.text for option in options].index(name))
+
+
+@pytest.mark.parametrize("mode", NAMES)
+@pytest.mark.parametrize("arithmetic", ARITHMETICS)
+def test_a_run_has_the_bits_of_vm_run(page, vm_run, tmp_path, mode, arithmetic):
+    page.choose("mode", mode)
+    page.choose("arithmetic", arithmetic)
+    page.choose("pattern", "gait")
+    page.slide("slow", 35)
+    page.slide("activation", 0.83)
+    page.advance(4)
+    page.slide("path", 15.21)
+    page.slide("frequency", 41)
+    page.advance(4)
+    muscle = tmp_path / "muscle.toml"
+    muscle.write_text(page.copied("copy-toml"))
+    rows = page.rows()
+    assert max(float(row["force_n"]) for row in rows) > 10
+    assert_same(rows, vm_run(muscle, rows, mode, arithmetic, "standard"))
+
+
+@pytest.mark.parametrize("accuracy", ["economy", "fine"])
+def test_classes_and_fibre_types_are_those_of_vm_run(page, vm_run, tmp_path, accuracy):
+    named(page, "soleus")
+    page.choose("class", accuracy)
+    page.choose("coefficients", "feline-vm4")
+    page.advance(5)
+    muscle = tmp_path / "muscle.toml"
+    muscle.write_text(page.copied("copy-toml"))
+    rows = page.rows()
+    assert_same(rows, vm_run(muscle, rows, "fes", "f32", accuracy))
+
+
+def test_every_muscle_is_that_of_its_name(page, vm_run):
+    options = page.element("muscle").find_elements("tag name", "option")
+    names = [option.text for option in options]
+    assert len(names) == 21
+    for name in names[1:]:
+        named(page, name)
+        page.advance(1)
+        rows = page.rows()
+        assert_same(rows, vm_run(name.replace(" ", "_"), rows, "fes", "f32", "standard"))
+
+
+def test_a_slider_changes_the_trace(page):
+    def picture():
+        # Two frames: what was asked for is drawn in the next.
+        return page.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => "
+            "done(document.getElementById('scope').toDataURL())));"
+        )
+
+    page.advance(5)
+    before, force = picture(), float(page.rows()[-1]["force_n"])
+    page.slide("activation", 1)
+    page.advance(5)
+    assert float(page.rows()[-1]["force_n"]) > 1.3 * force
+    assert picture() != before
+    assert "1.00" in page.text("activation-value")
+
+
+def test_rust_that_is_copied_compiles_and_gives_the_force_of_the_page(page, tmp_path):
+    programs = []
+    for mode, arithmetic in [("fes", "f32"), ("discrete", "fixed"), ("continuous", "f64")]:
+        page.choose("mode", mode)
+        page.choose("arithmetic", arithmetic)
+        page.advance(10)
+        force = float(page.rows()[-1]["force_n"])
+        text = page.copied("copy-rust")
+        assert len(text.splitlines()) == 10
+        programs.append((f"{mode}-{arithmetic}", text, force))
+    sources = tmp_path / "src/bin"
+    sources.mkdir(parents=True)
+    (tmp_path / "Cargo.toml").write_text(
+        '[package]\nname = "copied"\nedition = "2024"\n[workspace]\n'
+        f'[dependencies]\nvm-nostd = {{ path = "{ROOT}/vm-nostd" }}\n'
+    )
+    (tmp_path / "Cargo.lock").write_text((ROOT / "Cargo.lock").read_text())
+    for name, text, _ in programs:
+        (sources / f"{name}.rs").write_text(text)
+    target = ROOT / "target/copied"
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(target), "RUSTUP_TOOLCHAIN": "1.95.0"}
+    build = subprocess.run(
+        ["cargo", "build"], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert build.returncode == 0, build.stderr
+    for name, _, force in programs:
+        output = subprocess.run([target / "debug" / name], capture_output=True, text=True, check=True)
+        last = output.stdout.splitlines()[-1]
+        # Fixed point prints the force of the tick, in mN.
+        within = 5.1e-4 if name.endswith("fixed") else 1e-8 * force
+        assert abs(float(last.removesuffix(" N")) - force) <= within, name
+
+
+def test_ten_muscles_run_in_real_time(page):
+    for _ in range(9):
+        page.click("keep")
+    assert len(page.element("kept").find_elements("tag name", "li")) == 9
+    page.click("keep")
+    assert "at most 10" in page.text("refusal")
+    milliseconds = page.driver.execute_script(
+        "const start = performance.now(); advance(5000); return performance.now() - start;"
+    )
+    print(f"ten muscles, 5 s: {milliseconds:.0f} ms")
+    # Real time: 5,000 ticks of 1 ms.
+    assert milliseconds < 5000
+    rows = page.driver.execute_script("return run.tracks.map((kept) => kept.rings[0][run.tick])")
+    assert len(set(rows)) == 1 and rows[0] > 10
+    page.driver.find_element("css selector", "#kept button").click()
+    assert len(page.element("kept").find_elements("tag name", "li")) == 8
+
+
+def test_the_run_keeps_to_the_clock(page):
+    page.click("run")
+    before, start = page.driver.execute_script("return run.tick"), time.monotonic()
+    time.sleep(2)
+    ticks, passed = page.driver.execute_script("return run.tick") - before, time.monotonic() - start
+    page.pause()
+    # Frames that come late are made up for, up to a tenth of a second each.
+    assert 0 < ticks <= 1000 * passed + 200
+
+
+def test_cycles_are_those_of_the_generated_table(page):
+    table = (ROOT / "host-sim/docs/cycles.md").read_text().splitlines()
+    row = next(line for line in table if line.startswith("| cortex-m4f | fes-f32 |"))
+    cells = [cell.strip() for cell in row.strip("|").split("|")]
+    assert page.text("cycles").startswith(f"{cells[3]} cycles per tick, at most {cells[5]} ")
+    page.choose("core", "cortex-m0plus")
+    assert page.text("cycles").startswith("Not counted")
+    page.choose("arithmetic", "fixed")
+    page.choose("class", "economy")
+    assert "cycles per tick" in page.text("cycles")
+
+
+def test_curves_pass_where_they_must(page):
+    isometric, passive, velocity = page.driver.execute_script("return run.curves")
+    near = lambda curve, x: min(curve, key=lambda point: abs(point[0] - x))
+    # F0 at L_ce0; F_pe1 at L_max is a few percent of F0; FV is 1 at V = 0, falls and rises.
+    assert abs(near(isometric, 1)[1] - 1) < 0.02
+    assert near(passive, 0.8)[1] < 0.01 < near(passive, 1.4)[1]
+    assert abs(near(velocity, 0)[1] - 1) < 0.02
+    assert near(velocity, -3)[1] < 0.6 and near(velocity, 2)[1] > 1.2
+    assert all(one[0] <= other[0] for one, other in zip(velocity, velocity[1:]))
+
+
+def test_numbers_are_there_for_screen_readers_and_keyboards(page):
+    page.click("run")
+    time.sleep(4)
+    page.pause()
+    assert "Force" in page.text("spoken") and " N" in page.text("spoken")
+    unnamed = page.driver.execute_script(
+        "return [...document.querySelectorAll('input, select, button, canvas, textarea')].filter("
+        "(item) => !(item.labels?.length || item.textContent.trim() || item.ariaLabel)).map("
+        "(item) => item.id)"
+    )
+    assert unnamed == []
+    slider = page.element("activation")
+    before = float(slider.get_property("value"))
+    slider.send_keys(Keys.ARROW_RIGHT)
+    assert float(slider.get_property("value")) > before
+
+
+def test_a_muscle_that_cannot_be_is_refused_with_field_value_and_limit(page):
+    text = page.driver.execute_script(
+        "return model.define(9, {...run.tracks[0].muscle, tendon_length_cm: -2}, 0.15)"
+    )
+    assert "tendon_length = -0.02" in text and "must be between" in text
+
+
+@pytest.mark.parametrize("width, height", [(390, 844), (1280, 900)])
+def test_nothing_is_wider_than_the_window(page, width, height):
+    page.driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500},
+    )
+    wide = page.driver.execute_script("return document.documentElement.scrollWidth")
+    page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert wide <= width
