@@ -94,7 +94,10 @@ pub enum Class {
 }
 
 impl Class {
-    /// Its name on the command line and in tables.
+    /// All of them, the cheapest first.
+    pub const ALL: [Self; 3] = [Self::Economy, Self::Standard, Self::Fine];
+
+    /// Its name on the command line, in muscle files and in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Economy => "economy",
@@ -103,7 +106,8 @@ impl Class {
         }
     }
 
-    fn of_model(self) -> vm::Class {
+    /// The model's.
+    pub fn of_model(self) -> vm::Class {
         match self {
             Self::Economy => vm::Class::Economy,
             Self::Standard => vm::Class::Standard,
@@ -120,7 +124,19 @@ pub fn at_rest(
     time_step: f64,
     path_length: f64,
 ) -> Result<Box<dyn Running>, RunError> {
-    Rest { muscle, class: Class::Standard, time_step, path_length }.running(mode, arithmetic)
+    at_rest_in_class(muscle, mode, arithmetic, Class::Standard, time_step, path_length)
+}
+
+/// A muscle of any class at rest on a path (m), stepped by `time_step` (s).
+pub fn at_rest_in_class(
+    muscle: &Muscle,
+    mode: Mode,
+    arithmetic: Arithmetic,
+    class: Class,
+    time_step: f64,
+    path_length: f64,
+) -> Result<Box<dyn Running>, RunError> {
+    Rest { muscle, class, time_step, path_length }.running(mode, arithmetic)
 }
 
 /// Runs a muscle of the standard class over a trace: one row per input; the first is the muscle at
@@ -142,9 +158,8 @@ pub fn run_in_class(
     class: Class,
     trace: &InputTrace,
 ) -> Result<Vec<Row>, RunError> {
-    let (time_step, path_length) = (trace.time_step, trace.inputs[0].path_length);
-    let rest = Rest { muscle, class, time_step, path_length };
-    let mut running = rest.running(mode, arithmetic)?;
+    let path = trace.inputs[0].path_length;
+    let mut running = at_rest_in_class(muscle, mode, arithmetic, class, trace.time_step, path)?;
     let mut rows = vec![running.row()];
     for &input in &trace.inputs[1..] {
         rows.push(running.step(input)?);

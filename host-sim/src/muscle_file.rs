@@ -7,7 +7,7 @@ mod refusal;
 mod size;
 
 use crate::coefficients;
-use crate::engine::MOST_UNITS;
+use crate::engine::{Class, MOST_UNITS};
 use crate::model_muscle;
 use crate::reference::{Fatigue, Fiber, Muscle};
 use curve::CurveTable;
@@ -72,6 +72,7 @@ struct MuscleFile {
     recruitment_saturation: f64,
     #[serde(default = "default_coefficients")]
     coefficients: String,
+    class: Option<String>,
     #[serde(default)]
     elements: BTreeMap<String, toml::Value>,
     #[serde(default)]
@@ -117,6 +118,8 @@ pub struct NamedMuscle {
     pub name: String,
     /// The muscle, its fibre types in order of rank.
     pub muscle: Muscle,
+    /// Accuracy class, standard if the file does not say.
+    pub class: Class,
     /// How it answers to the pulses of its electrode, if the file says.
     pub curve: Option<RecruitmentCurveParams>,
 }
@@ -142,6 +145,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
         limit,
     };
     let refused = |(key, value, limit): Refusal| refuse(key, value, limit);
+    let class = file.class.as_deref().map_or(Ok(Class::default()), class).map_err(refused)?;
     let mut elements = coefficients::element_row(&file.coefficients).ok_or_else(|| {
         let sets: Vec<String> = coefficients::element_rows().into_iter().map(|(s, _)| s).collect();
         refuse(
@@ -205,5 +209,13 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     if let Some(refusal) = curve.as_ref().and_then(curve::refusal) {
         return Err(refused(refusal));
     }
-    Ok(NamedMuscle { name: file.name, muscle, curve })
+    Ok(NamedMuscle { name: file.name, muscle, class, curve })
+}
+
+/// The accuracy class of a name.
+fn class(name: &str) -> Result<Class, Refusal> {
+    Class::ALL.into_iter().find(|class| class.name() == name).ok_or_else(|| {
+        let names = Class::ALL.map(Class::name).join(", ");
+        ("class".to_owned(), format!("\"{name}\""), format!("must be one of {names}"))
+    })
 }

@@ -1,7 +1,7 @@
 //! Muscle files: strength by mass or by force, and elements overridden by name.
 
 use host_sim::coefficients;
-use host_sim::engine::{self, Arithmetic};
+use host_sim::engine::{self, Arithmetic, Class};
 use host_sim::muscle_file::parse;
 use host_sim::reference::{Input, Mode, Muscle};
 use host_sim::trace::InputTrace;
@@ -123,4 +123,19 @@ fn an_element_that_cannot_be_is_refused_by_file_line_key_and_limit() {
     refused(&with("density_g_per_cm3 = 9"), &[&line, "density_g_per_cm3 = 9", "0.5 and 2"]);
     let tension = "specific_tension_n_per_cm2 = 0.5";
     refused(&with(tension), &[&line, tension, "1 and 1000"]);
+}
+
+#[test]
+fn a_file_chooses_its_accuracy_class() {
+    let class = |line: &str| {
+        let text = MUSCLE.replacen("mass_g", &format!("{line}\nmass_g"), 1);
+        parse(&text, Path::new("m.toml")).map(|named| named.class).map_err(|e| e.to_string())
+    };
+    assert_eq!(class(""), Ok(Class::Standard));
+    for known in Class::ALL {
+        assert_eq!(class(&format!("class = \"{}\"", known.name())), Ok(known));
+    }
+    let refusal = "m.toml, line 3: class = \"coarse\": must be one of economy, standard, fine";
+    assert_eq!(class("class = \"coarse\""), Err(refusal.to_owned()));
+    assert!(class("class = 1").is_err_and(|message| message.contains("class")));
 }

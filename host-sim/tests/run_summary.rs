@@ -61,6 +61,27 @@ fn a_run_says_peak_force_range_of_length_and_flagged_ticks_on_standard_error() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("the reference checks nothing"));
 }
 
+/// Outputs and summary of a run of a muscle file with a line more, and with options.
+fn run_of(line: &str, options: &str) -> (String, String) {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), format!("{line}\n{MUSCLE}")).expect("a muscle");
+    let arguments = format!("run --muscle m.toml --input in.csv --output out.csv {options}");
+    let told = done(folder.path(), &arguments).stderr;
+    let rows = fs::read_to_string(folder.path().join("out.csv")).expect("an output");
+    (rows, String::from_utf8_lossy(&told).into_owned())
+}
+
+#[test]
+fn the_class_is_the_files_or_the_command_lines() {
+    let (standard, told) = run_of("", "");
+    assert!(told.contains("f32: peak force"), "{told}");
+    let (fine, told) = run_of("class = \"fine\"", "");
+    assert!(told.contains("f32, fine class: peak force"), "{told}");
+    assert_ne!(standard, fine);
+    assert_eq!(run_of("", "--class fine").0, fine);
+    assert_eq!(run_of("class = \"fine\"", "--class standard").0, standard);
+}
+
 #[test]
 fn a_run_needs_no_mode_no_arithmetic_and_no_output() {
     let folder = folder();

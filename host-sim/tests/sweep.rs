@@ -107,9 +107,14 @@ fn a_killed_sweep_goes_on_where_it_was() {
 
 #[test]
 fn a_replayed_case_has_the_error_of_its_row() {
+    error_of_a_replay("standard");
+    error_of_a_replay("economy");
+}
+
+fn error_of_a_replay(class: &str) {
     let folder = Folder::new();
     let output = folder.path("sweep.csv");
-    let arguments = ["--random", "3", "--seed", "5", "--modes", "fes"];
+    let arguments = ["--random", "3", "--seed", "5", "--modes", "fes", "--class", class];
     swept(&arguments, &output);
     let text = fs::read_to_string(&output).expect("a table");
     let header: Vec<&str> = text.lines().nth(1).expect("a header").split(',').collect();

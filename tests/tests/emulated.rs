@@ -7,6 +7,7 @@
 use firmware::link::{Readings, Report, Request};
 use firmware::safety::{CHANNELS, Fault, NotArmed, State};
 use firmware::{Stimulus, TICK_US};
+use host_sim::engine::Class;
 use host_sim::hil::{self, Client, Emulated};
 use host_sim::{muscle_file, reference, trace};
 use std::path::{Path, PathBuf};
@@ -29,8 +30,8 @@ fn traces_played_to_the_firmware_have_the_bits_of_the_hosts_run() {
     ] {
         let trace = trace::read_inputs(&data(&format!("vectors/{vector}.csv"))).expect("inputs");
         let mut client = Client::new(Emulated::run(&image, &[]).expect("a machine"));
-        let played =
-            hil::play(&mut client, &muscle, mode, &trace, &mut |_| ()).expect("equal bits");
+        let played = hil::play(&mut client, &muscle, Class::Standard, mode, &trace, &mut |_| ())
+            .expect("equal bits");
         assert_eq!(played.rows.len(), trace.inputs.len());
         let Report { longest_us, late, frames, .. } = played.report;
         assert_eq!((late, frames.broken, frames.refused), (0, 0, 0));

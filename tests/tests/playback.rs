@@ -1,6 +1,7 @@
 //! A trace played over the link by the client of `vm hil`, to the whole firmware without its chip.
 
 use firmware::link::{Answer, Message, NO_SESSION, Receiver, Request, SessionNumber, encode};
+use host_sim::engine::Class;
 use host_sim::hil::{self, Client, HilError};
 use host_sim::reference::Mode;
 use host_sim::{muscle_file, trace};
@@ -17,10 +18,16 @@ fn data(name: &str) -> PathBuf {
 fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
     let muscle =
         muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
-    for (vector, mode) in [("fes_steps", Mode::Fes), ("continuous_length_3hz", Mode::Continuous)] {
+    for (vector, mode, class) in [
+        ("fes_steps", Mode::Fes, Class::Standard),
+        ("continuous_length_3hz", Mode::Continuous, Class::Standard),
+        ("continuous_length_3hz", Mode::Continuous, Class::Economy),
+        ("continuous_length_3hz", Mode::Continuous, Class::Fine),
+    ] {
         let trace = trace::read_inputs(&data(&format!("vectors/{vector}.csv"))).expect("inputs");
         let mut host = Client::new(InProcess::boot(Memory::new()));
-        let played = hil::play(&mut host, &muscle, mode, &trace, &mut |_| ()).expect("equal bits");
+        let played =
+            hil::play(&mut host, &muscle, class, mode, &trace, &mut |_| ()).expect("equal bits");
         assert_eq!(played.rows.len(), trace.inputs.len());
         assert_eq!(played.report.rows as usize, trace.inputs.len() - 1);
         assert_eq!(played.report.frames.broken + played.report.frames.refused, 0);
@@ -81,6 +88,6 @@ fn another_muscle_has_other_bits() {
         answers: Receiver::new(),
         session: NO_SESSION,
     });
-    let played = hil::play(&mut host, &muscle, Mode::Fes, &trace, &mut |_| ());
+    let played = hil::play(&mut host, &muscle, Class::Standard, Mode::Fes, &trace, &mut |_| ());
     assert!(matches!(played, Err(HilError::Differs(_))), "{played:?}");
 }

@@ -1,5 +1,6 @@
 //! `vm hil --port` with a pseudo-terminal to the emulated board.
 
+use host_sim::engine::Class;
 use host_sim::hil;
 use host_sim::reference::Mode;
 use host_sim::target::{QEMU, STIMULATOR, STM32F405, start_error};
@@ -47,8 +48,8 @@ fn a_board_on_a_serial_port_has_the_bits_of_the_hosts_run() {
         muscle_file::read(&data.join("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
     let trace = trace::read_inputs(&data.join("vectors/fes_steps.csv")).expect("inputs");
     let mut client = hil::serial(port, 115_200).expect("a port");
-    let played =
-        hil::play(&mut client, &muscle, Mode::Fes, &trace, &mut |_| ()).expect("equal bits");
+    let played = hil::play(&mut client, &muscle, Class::Standard, Mode::Fes, &trace, &mut |_| ())
+        .expect("equal bits");
     assert_eq!(played.rows.len(), trace.inputs.len());
     assert_eq!(played.report.late, 0);
 }

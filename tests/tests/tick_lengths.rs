@@ -1,6 +1,7 @@
 //! The stimulator built for the shortest and the longest tick, in QEMU: the host's bits, and no
 //! tick late.
 
+use host_sim::engine::Class;
 use host_sim::hil::{self, Client, Emulated};
 use host_sim::reference::Mode;
 use host_sim::scenario;
@@ -23,9 +24,15 @@ fn a_tick_may_be_half_a_millisecond_or_two() {
         let played = scenarios.iter().find(|one| one.name == name && one.mode == Mode::Fes);
         let scenario = played.expect("a scenario");
         let mut client = Client::new(Emulated::run(&image, &[]).expect("a machine"));
-        let played =
-            hil::play(&mut client, &scenario.muscle, scenario.mode, &scenario.trace, &mut |_| ())
-                .expect("equal bits");
+        let played = hil::play(
+            &mut client,
+            &scenario.muscle,
+            Class::Standard,
+            scenario.mode,
+            &scenario.trace,
+            &mut |_| (),
+        )
+        .expect("equal bits");
         assert_eq!(played.rows.len(), scenario.trace.inputs.len());
         assert_eq!(played.report.late, 0, "at {tick_us} us");
     }

@@ -2,8 +2,9 @@
 
 use super::print;
 use super::run::check_run;
-use crate::engine;
+use crate::engine::{self, Class};
 use crate::hil::{self, Client, Emulated, HilError, Line, Played};
+use crate::muscle_file::NamedMuscle;
 use crate::muscles::find;
 use crate::output_file::STANDARD;
 use crate::progress;
@@ -29,6 +30,9 @@ pub struct HilArgs {
     /// Recruitment mode.
     #[arg(long, value_enum, default_value = "continuous")]
     mode: DeviceMode,
+    /// Accuracy class. Default: that of the muscle file, which is standard if it names none.
+    #[arg(long, value_enum)]
+    class: Option<Class>,
     /// Serial port of a board; without one, the firmware is built and runs in QEMU.
     #[arg(long)]
     port: Option<String>,
@@ -47,7 +51,8 @@ enum DeviceMode {
 }
 
 pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
-    let muscle = find(&args.muscle)?.muscle;
+    let NamedMuscle { muscle, class, .. } = find(&args.muscle)?;
+    let class = args.class.unwrap_or(class);
     let trace = trace::read_inputs(&args.input)?;
     check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
     let mode = match args.mode {
@@ -55,8 +60,8 @@ pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
         DeviceMode::Fes => Mode::Fes,
     };
     let played = match &args.port {
-        Some(port) => play(hil::serial(port, args.baud)?, &muscle, mode, &trace),
-        None => play(Emulated::start()?, &muscle, mode, &trace),
+        Some(port) => play(hil::serial(port, args.baud)?, &muscle, class, mode, &trace),
+        None => play(Emulated::start()?, &muscle, class, mode, &trace),
     }?;
     let rows: Vec<OutputRow> = played
         .rows
@@ -93,11 +98,12 @@ pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
 fn play<L: Line>(
     mut client: Client<L>,
     muscle: &Muscle,
+    class: Class,
     mode: Mode,
     trace: &InputTrace,
 ) -> Result<Played, HilError> {
     let bar = progress::bar("playing ticks", trace.inputs.len());
-    let played = hil::play(&mut client, muscle, mode, trace, &mut |rows| {
+    let played = hil::play(&mut client, muscle, class, mode, trace, &mut |rows| {
         bar.set_position(rows as u64);
     });
     bar.finish_and_clear();

@@ -3,6 +3,7 @@
 use super::ModeName;
 use crate::engine::{self, Arithmetic, Class};
 use crate::model_muscle;
+use crate::muscle_file::NamedMuscle;
 use crate::muscles::find;
 use crate::reference::Muscle;
 use crate::trace::{self, InputTrace, OutputRow};
@@ -30,18 +31,18 @@ pub struct RunArgs {
     /// Arithmetic.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
     arithmetic: Arithmetic,
-    /// Accuracy class.
-    #[arg(long, value_enum, default_value_t)]
-    class: Class,
+    /// Accuracy class. Default: that of the muscle file, which is standard if it names none.
+    #[arg(long, value_enum)]
+    class: Option<Class>,
 }
 
 /// Runs the muscle, writes its outputs, and prints a summary on standard error.
 pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
-    let muscle = find(&args.muscle)?.muscle;
+    let NamedMuscle { muscle, class, .. } = find(&args.muscle)?;
+    let class = args.class.unwrap_or(class);
     let trace = trace::read_inputs(&args.input)?;
     check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
-    let computed =
-        engine::run_in_class(&muscle, args.mode.into(), args.arithmetic, args.class, &trace)?;
+    let computed = engine::run_in_class(&muscle, args.mode.into(), args.arithmetic, class, &trace)?;
     let rows: Vec<OutputRow> = computed
         .iter()
         .enumerate()
@@ -56,14 +57,14 @@ pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
         })
         .collect();
     trace::write_outputs(&args.output, &rows)?;
-    let text = summary(args, &trace, &computed);
+    let text = summary(args, class, &trace, &computed);
     // A closed standard error is no failure: the outputs are written.
     let _nobody_listens = writeln!(std::io::stderr(), "{text}");
     Ok(())
 }
 
 /// Peak force, range of length and flagged ticks.
-fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
+fn summary(args: &RunArgs, class: Class, trace: &InputTrace, rows: &[engine::Row]) -> String {
     let ticks = rows.len() - 1;
     let mode = args.mode.to_possible_value().map_or(String::new(), |m| m.get_name().to_owned());
     let force = |row: &usize| rows[*row].0.force;
@@ -83,13 +84,18 @@ fn summary(args: &RunArgs, trace: &InputTrace, rows: &[engine::Row]) -> String {
         (_, true) => "no tick flagged".to_owned(),
         (_, false) => format!("flagged: {}", flagged.join(", ")),
     };
+    // The reference has no class, and the standard one goes without saying.
+    let class = match (args.arithmetic, class) {
+        (Arithmetic::Reference, _) | (_, Class::Standard) => String::new(),
+        (_, class) => format!(", {} class", class.name()),
+    };
     let to = if args.output == Path::new(crate::output_file::STANDARD) {
         String::new()
     } else {
         format!("; written to {}", args.output.display())
     };
     format!(
-        "{ticks} ticks, {mode}, {}: peak force {:.3} N at {} s; fascicle length {least:.4} to \
+        "{ticks} ticks, {mode}, {}{class}: peak force {:.3} N at {} s; fascicle length {least:.4} to \
          {most:.4} L_ce0; {flagged}{to}",
         args.arithmetic.name(),
         force(&peak),

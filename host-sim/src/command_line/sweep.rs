@@ -143,7 +143,9 @@ fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Err
     let case = sweep.space.case(number);
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let (muscle, input) = (folder.join("muscle.toml"), folder.join("input.csv"));
-    write_atomically(&muscle, case.muscle_file().as_bytes())?;
+    // So that `vm run` takes the class that was swept.
+    let text = format!("class = \"{}\"\n{}", sweep.class.name(), case.muscle_file());
+    write_atomically(&muscle, text.as_bytes())?;
     write_atomically(&input, case.input_file().as_bytes())?;
     let mode = mode_name(case.mode);
     match case.errors(&sweep.arithmetics, sweep.class) {

@@ -1,13 +1,13 @@
 //! Plays a trace of inputs to a muscle on a device.
 
-use crate::engine::{self, Arithmetic};
+use crate::engine::{self, Arithmetic, Class};
 use crate::hil::{Client, HilError, Line};
 use crate::model_muscle;
 use crate::reference::{self, Muscle, Sample};
 use crate::trace::InputTrace;
 use firmware::TYPES;
 use firmware::link::{Answer, MOST_ROWS, Mode, Report, Request, RowInputs, Traced, Upload};
-use vm_nostd::Status;
+use vm_nostd::{MuscleParams, Status};
 
 /// Result of a playback.
 #[derive(Clone, Debug)]
@@ -26,16 +26,19 @@ pub struct Played {
 pub fn play<L: Line>(
     client: &mut Client<L>,
     muscle: &Muscle,
+    class: Class,
     mode: reference::Mode,
     trace: &InputTrace,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Played, HilError> {
-    let upload = upload(muscle, mode)?;
+    let upload = upload(muscle, class, mode)?;
     begin(client, trace.time_step)?;
     client.order(&Request::Upload { place: 0, upload })?;
     let path = trace.inputs[0].path_length;
     client.order(&Request::Rest([Some(path as f32), None]))?;
-    let mut host = engine::at_rest(muscle, mode, Arithmetic::F32, trace.time_step, path)?;
+    let arithmetic = Arithmetic::F32;
+    let mut host =
+        engine::at_rest_in_class(muscle, mode, arithmetic, class, trace.time_step, path)?;
     compare_words(client, host.as_ref(), "at rest")?;
 
     let inputs: Vec<[RowInputs; 2]> = trace.inputs[1..]
@@ -76,7 +79,7 @@ pub(super) fn begin<L: Line>(client: &mut Client<L>, time_step: f64) -> Result<(
 }
 
 /// The upload of a muscle.
-pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError> {
+pub fn upload(muscle: &Muscle, class: Class, mode: reference::Mode) -> Result<Upload, HilError> {
     let unfit = |what, value: String, limit: String| Err(HilError::Unfit { what, value, limit });
     if muscle.fibers.len() != TYPES {
         let limit = format!("the device's muscles have {TYPES}");
@@ -93,7 +96,8 @@ pub fn upload(muscle: &Muscle, mode: reference::Mode) -> Result<Upload, HilError
             return unfit("mode", engine::mode_name(other).to_owned(), limit);
         }
     };
-    Ok(Upload { mode, muscle: model_muscle::params(muscle), electrode: None })
+    let muscle = MuscleParams { class: class.of_model(), ..model_muscle::params(muscle) };
+    Ok(Upload { mode, muscle, electrode: None })
 }
 
 /// Sends the next message of rows, or listens if the device has no room.
