@@ -1,7 +1,7 @@
-//! What a tick costs on a Cortex-M4F, M3 or M0+, in cycles, from the instructions that execute.
+//! Cycles per tick on a Cortex-M4F, M3 or M0+, estimated from the executed instructions.
 //!
 //! QEMU runs the image and a plugin streams the addresses of executed instructions; each is decoded
-//! once, and a timing model of the core adds up cycles. Flash wait states are not in it.
+//! once, and a timing model of the core adds up cycles. Flash wait states are not modelled.
 
 mod adversarial;
 mod bench;

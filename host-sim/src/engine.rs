@@ -3,19 +3,20 @@
 use crate::model_muscle::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Sample, Simulation, SolverError};
 use crate::trace::InputTrace;
+use serde::{Deserialize, Serialize};
 use std::rc::Rc;
 use vm_nostd as vm;
 
-/// Arithmetic a muscle is computed in.
+/// Arithmetic of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Arithmetic {
-    /// The independent reference, adaptive, in f64.
+    /// The independent reference: adaptive steps, f64.
     Reference,
     /// vm-nostd in f32, as on the target.
     F32,
     /// vm-nostd in fixed point, as on a target without a floating-point unit.
     Fixed,
-    /// vm-nostd in f64, which shows the error of the scheme alone.
+    /// vm-nostd in f64: shows the truncation error alone.
     F64,
 }
 
@@ -50,10 +51,10 @@ pub enum RunError {
     /// The reference integrator failed.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// Bits are compared in the arithmetics of `vm-nostd` only.
-    #[error("the reference has no bits to compare")]
+    /// Only the arithmetics of `vm-nostd` have golden bits.
+    #[error("the reference has no golden bits")]
     NoBits,
-    /// A discrete mode, and a muscle without a number of motor units.
+    /// A discrete mode needs the number of motor units.
     #[error(
         "units = (missing), fibre type of rank {0}: the discrete modes need the number of units"
     )]
@@ -69,22 +70,23 @@ pub enum RunError {
 /// Output of a row: force, length and velocity, and the flags.
 pub type Row = (Sample, vm::Status);
 
-/// A muscle that is being run.
+/// A muscle with its state during a run.
 pub trait Running {
     /// Current output.
     fn row(&self) -> Row;
     /// Steps one tick.
     fn step(&mut self, input: Input) -> Result<Row, RunError>;
-    /// A copy with its state.
+    /// Copies muscle and state.
     fn fork(&self) -> Box<dyn Running>;
-    /// Calls `watch` with each word of the state; the reference has none.
+    /// Calls `watch` with each word of the state; never for the reference.
     fn watch(&self, watch: &mut dyn FnMut(u64));
 }
 
-/// An accuracy class of `vm-nostd`, which the reference does not have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+/// An accuracy class of `vm-nostd`; the reference has none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Class {
-    /// One substep per tick, unless the muscle rings too fast for it.
+    /// One substep per tick, unless the muscle rings too fast for that.
     Economy,
     /// Substeps of at most 0.25 ms.
     #[default]

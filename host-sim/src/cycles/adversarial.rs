@@ -1,11 +1,11 @@
-//! Adversarial inputs, unlike any smooth movement.
+//! Adversarial inputs: missing, denormal and jumping values.
 
 use crate::reference::{Input, Mode};
 use crate::scenario::{Scenario, paper_muscle};
 use crate::trace::InputTrace;
 use vm_nostd::Status;
 
-/// Ticks of the scenario.
+/// Length of the scenario, ticks.
 const TICKS: u32 = 6_000;
 
 /// Reproducible pseudo-random numbers 0..1 (xorshift32).
@@ -20,15 +20,15 @@ impl Noise {
     }
 }
 
-/// Clipped, denormal and missing inputs; paths that jump, creep through V = 0 or follow the edges
-/// of the domain; activations at which f_int and f_eff cross in every tick.
+/// Clipped, denormal and missing inputs; paths that jump, creep through V = 0 or follow the limits
+/// of the validity range; activations at which f_int and f_eff cross in every tick.
 pub fn scenario() -> Scenario {
     let mut noise = Noise(0x1234_5678);
     let mut path = 0.16;
     let odd = [-1.0, 7.0, 1e-40, 0.0, 1.0, f64::NAN, f64::INFINITY];
     let inputs = (0..=TICKS)
         .map(|tick| {
-            // Each kind for half a second.
+            // Half a second of each kind.
             path = match (tick / 500) % 6 {
                 0 => 0.16 + 1e-6 * noise.next(),
                 1 => 0.08 + 0.104 * noise.next(),

@@ -1,4 +1,5 @@
-//! The bench: an image that drives cases through inputs, and what each of their ticks costs.
+//! Builds and runs the bench, the image that steps each case through its inputs, and times every
+//! tick.
 
 use super::case::{Case, Run};
 use super::core::Core;
@@ -13,13 +14,13 @@ use std::path::Path;
 /// Why a case could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
-    /// The target is not to be had.
+    /// The target toolchain or QEMU is missing, or the build failed.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// The bench could not be followed.
+    /// The bench could not be traced or timed.
     #[error(transparent)]
     Follow(#[from] FollowError),
-    /// It did not end.
+    /// The bench did not end within its timeout.
     #[error("the bench is still running after {0} s")]
     Endless(u64),
     /// The inputs could not be written.
@@ -27,8 +28,8 @@ pub enum BenchError {
     Inputs(#[from] std::io::Error),
 }
 
-/// Builds the bench for a core with the inputs of runs, and times every tick of the cases; returns
-/// the image, too.
+/// Builds the bench for a core with the inputs of `runs` and times every tick of the cases. Returns
+/// the image as well.
 pub fn measure(
     core: Core,
     cases: &[Case],
@@ -55,7 +56,7 @@ pub fn measure(
     Ok((image, followed))
 }
 
-/// The inputs in the bench's format.
+/// Encodes the inputs in the bench's binary format.
 fn encode(runs: &[Run]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for run in runs {

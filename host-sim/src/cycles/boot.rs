@@ -1,5 +1,5 @@
-//! Calls one function of an image directly, with given arguments: for kernels that no program
-//! calls.
+//! Calls one function of an image directly with given arguments, for kernels that the image itself
+//! does not call.
 //!
 //! QEMU loads the image and a small loader into the RAM above it, and starts there: it enables the
 //! floating-point unit, sets stack and arguments, calls the function and ends the run.
@@ -21,11 +21,11 @@ pub enum Argument {
     Buffer(Vec<u8>),
 }
 
-/// Not an argument.
+/// The text of an argument could not be parsed.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "\"{0}\" is no argument: an integer (42, -1, 0x20), a float (1.5 or 1.5f64), zeroed bytes (zeros:64) or \
-     given ones (bytes:00ff10)"
+    "\"{0}\" is no argument: an integer (42, -1, 0x20), a float (1.5 or 1.5f64), zeroed bytes \
+     (zeros:64) or literal bytes (bytes:00ff10)"
 )]
 pub struct ArgumentError(String);
 
@@ -56,7 +56,7 @@ impl FromStr for Argument {
     }
 }
 
-/// Bytes written as pairs of hexadecimal digits.
+/// Parses pairs of hexadecimal digits.
 fn bytes(digits: &str) -> Option<Vec<u8>> {
     let pairs = digits.as_bytes().chunks(2);
     pairs.map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()).collect()
@@ -65,11 +65,11 @@ fn bytes(digits: &str) -> Option<Vec<u8>> {
 /// Why a function could not be called directly.
 #[derive(Debug, thiserror::Error)]
 pub enum BootError {
-    /// More arguments than registers.
-    #[error("{0} of {1}: only as many arguments are passed in registers")]
-    Arguments(&'static str, usize),
-    /// Buffers that do not fit.
-    #[error("buffers of {0} bytes: there is room for {BUFFERS}")]
+    /// More arguments than argument registers.
+    #[error("{1} {0}: only {2} are passed in registers")]
+    Arguments(&'static str, usize, usize),
+    /// The buffers do not fit into the reserved RAM.
+    #[error("buffers of {0} bytes exceed the limit of {BUFFERS}")]
     Buffers(usize),
     /// The image occupies the loader's RAM.
     #[error(
@@ -97,12 +97,12 @@ const CODE: u32 = 0x2001_F000;
 const RAM_END: u32 = 0x2002_0000;
 /// Size of the buffers, bytes.
 const BUFFERS: usize = (CODE - STACK) as usize;
-/// Coprocessor Access Control Register, of which bits 20 to 23 enable the floating-point unit.
+/// Coprocessor Access Control Register; bits 20 to 23 enable the floating-point unit.
 const CPACR: u32 = 0xE000_ED88;
-/// Semihosting's reason for a regular exit.
+/// Semihosting exit reason ADP_Stopped_ApplicationExit.
 const APPLICATION_EXIT: u32 = 0x2_0026;
 
-/// Instructions with two literals, followed by [`table`].
+/// Start-up code with its two literals; [`table`] follows it.
 const STUB: [u16; 32] = [
     0x4C0E, // 00 ldr r4, [pc, #0x38]  the table
     0xCC0E, // 02 ldm r4!, {r1, r2, r3}
@@ -138,7 +138,8 @@ const STUB: [u16; 32] = [
     ((CODE + 0x40) >> 16) as u16, // 3c
 ];
 
-/// Register values: address of the control register, sp, the function, r0 to r3, s0 to s15.
+/// Register values in load order: address of CPACR, sp, the function, r0 to r3, s0 to s15; and the
+/// contents of the buffers.
 fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), BootError> {
     let (mut words, mut floats, mut buffers) = (Vec::new(), Vec::new(), Vec::new());
     for argument in arguments {
@@ -153,14 +154,14 @@ fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), B
             Argument::Buffer(bytes) => {
                 words.push(STACK + buffers.len() as u32);
                 buffers.extend(bytes);
-                // The next one is aligned for any access.
+                // Align the next buffer for any access.
                 buffers.resize(buffers.len().next_multiple_of(8), 0);
             }
         }
     }
     for (what, values, most) in [("integers and buffers", &words, 4), ("floats", &floats, 16)] {
         if values.len() > most {
-            return Err(BootError::Arguments(what, values.len()));
+            return Err(BootError::Arguments(what, values.len(), most));
         }
     }
     if buffers.len() > BUFFERS {
@@ -172,12 +173,12 @@ fn table(function: u32, arguments: &[Argument]) -> Result<(Vec<u32>, Vec<u8>), B
     Ok(([[CPACR, STACK, thumb].as_slice(), &words, &floats].concat(), buffers))
 }
 
-/// The instructions that call the function, and their address.
+/// The start-up code and its address.
 pub fn code() -> (u32, Vec<u8>) {
     (CODE, STUB.iter().flat_map(|half| half.to_le_bytes()).collect())
 }
 
-/// Arguments that make QEMU call the function at an address of an image; files go to `folder`.
+/// QEMU arguments that call the function at an address of an image. Writes its files to `folder`.
 pub fn loader_arguments(
     image: &Path,
     function: u32,
@@ -242,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stub_is_what_its_comments_say() {
+    fn the_stub_disassembles_to_its_comments() {
         let (_, code) = code();
         let decoder = Decoder::new().expect("a decoder");
         let mut at = 0;
@@ -277,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_go_where_the_call_standard_puts_them() {
+    fn arguments_are_passed_per_the_procedure_call_standard() {
         let arguments = ["-1", "1.5", "zeros:3", "bytes:0aff", "0x10", "-2f64"]
             .map(|text| text.parse().expect("an argument"));
         let (table, buffers) = table(0x0800_0100, &arguments).expect("few enough");
@@ -287,11 +288,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_argument_is_refused() {
+    fn malformed_arguments_are_refused() {
         for text in ["", "x", "1.2.3", "zeros:-1", "zeros:100000", "bytes:0g", "0x1ffffffff"] {
             assert!(text.parse::<Argument>().is_err(), "{text}");
         }
         let words = vec![Argument::Word(0); 5];
-        assert!(matches!(table(0, &words), Err(BootError::Arguments(_, 5))));
+        assert!(matches!(table(0, &words), Err(BootError::Arguments(_, 5, 4))));
     }
 }

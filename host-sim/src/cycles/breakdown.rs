@@ -1,4 +1,4 @@
-//! Where cycles go: by function, by class of instruction, by address.
+//! Cycles by function, by source file, by class of instruction and by address.
 
 use super::estimator::Cost;
 use super::image::{Image, ImageError};
@@ -6,40 +6,39 @@ use super::instruction::{Class, Instruction};
 use super::source::Source;
 use std::collections::BTreeMap;
 
-/// A part of the cost.
+/// A share of the total cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What it is the cost of.
+    /// Name of the function, file or class.
     pub name: String,
-    /// Its cost.
     pub cost: Cost,
 }
 
-/// Executed instructions with how often each was executed, and its cost in all.
+/// Each executed instruction, its execution count and its total cost.
 type Executions = [(Instruction, u64, Cost)];
 
-/// The cost of each function, the most expensive first.
+/// Cost of each function, most expensive first.
 pub fn by_function(image: &Image, executions: &Executions) -> Vec<Part> {
     sums(executions, |instruction| {
         image
             .function_at(instruction.address)
-            .map_or("outside of any function", |function| &function.name)
+            .map_or("outside any function", |function| &function.name)
             .to_owned()
     })
 }
 
-/// The cost of what is in each file of the model, the most expensive first.
+/// Cost of each source file of the model, most expensive first.
 pub fn by_file(image: &Image, executions: &Executions) -> Result<Vec<Part>, ImageError> {
     let source = Source::of(image)?;
     Ok(sums(executions, |instruction| source.file(instruction.address)))
 }
 
-/// The cost of each class of instruction, the most expensive first.
+/// Cost of each class of instruction, most expensive first.
 pub fn by_class(executions: &Executions) -> Vec<Part> {
     sums(executions, |instruction| class_name(instruction.class).to_owned())
 }
 
-/// The addresses that cost most, at most `count` of them.
+/// The `count` most expensive instructions.
 pub fn hottest(executions: &Executions, count: usize) -> Vec<&(Instruction, u64, Cost)> {
     let mut all: Vec<_> = executions.iter().collect();
     all.sort_by_key(|(instruction, _, cost)| {

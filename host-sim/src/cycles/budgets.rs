@@ -1,4 +1,4 @@
-//! The budgets that costs are held to.
+//! Budgets of cycles, state, code and stack, and the check against them.
 
 use super::case::{Case, Subject};
 use super::core::Core;
@@ -8,26 +8,26 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 const BUDGETS: &str = include_str!("../../data/budgets.toml");
-/// A budget of which less than this share is used is stale.
+/// A budget is stale if less than this share of it is used.
 const USED: f64 = 0.8;
 
-/// What `data/budgets.toml` holds.
+/// Contents of `data/budgets.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Budgets {
-    /// Most that the most expensive tick may take, relative to the mean, pessimistic.
+    /// Upper limit of the most expensive tick over the mean, pessimistic setting.
     maximum_over_mean: f64,
-    /// Least that the literal port in `f32` takes, relative to the model.
+    /// Lower limit of the literal port's cycles over the model's, both in `f32`.
     literal_over_model: f64,
-    /// Of each core, of each case of the model.
+    /// By core and case of the model.
     core: BTreeMap<Core, BTreeMap<String, Budget>>,
 }
 
-/// What a case may cost.
+/// Budget of one case.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Budget {
-    /// Pessimistic cycles of the most expensive tick, and the margin on top.
+    /// Pessimistic cycles of the most expensive tick, including the margin.
     cycles: u64,
     /// Bytes of a muscle's state.
     state_bytes: u32,
@@ -40,17 +40,17 @@ struct Budget {
 }
 
 impl Budgets {
-    /// Those of `data/budgets.toml`.
+    /// Reads `data/budgets.toml`.
     pub fn read() -> Result<Self, toml::de::Error> {
         toml::from_str(BUDGETS)
     }
 
-    /// Most bytes of a state of a case.
+    /// State budget of a case, bytes.
     pub fn state_bytes(&self, case: &str) -> Option<u32> {
         self.core.get(&Core::CortexM4F)?.get(case).map(|budget| budget.state_bytes)
     }
 
-    /// Holds a case's row to what it may cost.
+    /// Checks a case's row against its budget and records the result in the row.
     pub fn hold(&self, case: &Case, row: &mut Row) {
         let budget = self.core.get(&row.target).and_then(|cases| cases.get(case.name));
         let problems = match (case.subject, budget) {
@@ -90,7 +90,7 @@ impl Budgets {
             })
             .collect();
         let (spread, most) = (row.maximum_over_mean(), self.maximum_over_mean);
-        // No number is not within it.
+        // NaN fails every comparison, so it is never within the limit.
         let within = spread <= most;
         if !within {
             problems.push(format!("maximum over mean {spread:.3} > {most}"));
@@ -137,7 +137,7 @@ mod tests {
         Budgets { maximum_over_mean: 1.12, literal_over_model: 100.0, core }
     }
 
-    /// What is wrong with a row, once the first case's budget is changed.
+    /// The problem of a row after a change of budgets or row; empty if it passes.
     fn problem(case: &Case, change: impl Fn(&mut Budgets, &mut Row)) -> String {
         let (mut budgets, mut row) = (budgets(), a_row(case));
         change(&mut budgets, &mut row);
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_budget_is_neither_exceeded_nor_stale() {
+    fn exceeded_and_stale_budgets_are_reported() {
         let with = |change: fn(&mut Budget)| {
             problem(&CASES[0], |budgets, _| {
                 budgets.core.values_mut().flat_map(BTreeMap::values_mut).for_each(change);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_without_budget_with_an_expensive_tick_or_with_parts_missing_does_not_pass() {
+    fn missing_budgets_expensive_ticks_and_missing_shares_are_reported() {
         let none = problem(&CASES[0], |budgets, _| budgets.core.clear());
         assert_eq!(none, "no budget");
         let spread = problem(&CASES[0], |budgets, _| budgets.maximum_over_mean = 1.1);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_literal_port_is_slower_by_as_much_as_is_claimed() {
+    fn the_ratio_of_the_literal_port_is_checked() {
         let literal = Case::named("literal-fes-f32").expect("a case");
         assert_eq!(problem(literal, |_, _| ()), "");
         let with = |ratio| problem(literal, |_, row| row.ratio = ratio);

@@ -1,4 +1,4 @@
-//! What is measured: the model's tick, and what it is compared with.
+//! The measured cases: the model's tick and its baselines.
 
 use super::adversarial;
 use crate::engine::{self, Arithmetic, Class, RunError};
@@ -16,16 +16,16 @@ pub enum Subject {
     Model(Mode, Arithmetic),
     /// A tick of the literal port, in single or double precision.
     Literal(Mode, Arithmetic),
-    /// A tick of the model in `f32` with so many motor units of each of two types.
+    /// A tick of the model in `f32` with this number of motor units of each of two types.
     Discrete(usize),
-    /// The same with an effective length of each unit.
+    /// The same with the effective length of each unit.
     EffectiveLength(usize),
-    /// The functions of libm that one evaluation of the equations calls.
+    /// The libm calls of one evaluation of the equations.
     Kernels,
 }
 
-/// Bytes of the state of a muscle of so many motor units of each of two types, as a function of the
-/// acting length.
+/// State size in bytes for a type of acting length and a number of motor units of each of two
+/// types: `units per type => units in total`.
 macro_rules! bytes_of_units {
     ($length:ty, $count:expr, $($each:literal => $all:literal),*) => {
         match $count {
@@ -38,13 +38,13 @@ macro_rules! bytes_of_units {
 /// One row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Case {
-    /// Its own name.
+    /// Unique name.
     pub name: &'static str,
-    /// The bench's function.
+    /// Function of the bench.
     pub function: &'static str,
-    /// What it computes.
+    /// Computation that is measured.
     pub subject: Subject,
-    /// Ticks of a moving muscle that are measured; `None`: all there are.
+    /// Number of measured ticks of [`BASELINE_SCENARIO`]; `None`: all ticks of all scenarios.
     pub ticks: Option<usize>,
 }
 
@@ -61,9 +61,9 @@ pub const CASES: [Case; 19] = {
     ) -> Case {
         Case { name, function, subject, ticks }
     }
-    // A tick of a baseline costs much the same whatever its inputs are: a few tell.
+    // A baseline costs nearly the same on every tick, so an excerpt suffices.
     let (some, few) = (Some(500), Some(20));
-    let of_figure = Some(100);
+    let figure = Some(100);
     [
         case("continuous-f32", "step_continuous_f32", Model(Continuous, F32), None),
         case("fes-f32", "step_fes_f32", Model(Fes, F32), None),
@@ -76,29 +76,29 @@ pub const CASES: [Case; 19] = {
         case("kernels-f32", "kernels_f32", Kernels, some),
         case("discrete-1+1-f32", "step_discrete_2_f32", Discrete(1), some),
         case("discrete-30+30-f32", "step_discrete_60_f32", Discrete(30), some),
-        case("discrete-3+3-f32", "step_discrete_6_f32", Discrete(3), of_figure),
-        case("discrete-6+6-f32", "step_discrete_12_f32", Discrete(6), of_figure),
-        case("discrete-15+15-f32", "step_discrete_30_f32", Discrete(15), of_figure),
-        case("leff-1+1-f32", "step_leff_2_f32", EffectiveLength(1), of_figure),
-        case("leff-3+3-f32", "step_leff_6_f32", EffectiveLength(3), of_figure),
-        case("leff-6+6-f32", "step_leff_12_f32", EffectiveLength(6), of_figure),
-        case("leff-15+15-f32", "step_leff_30_f32", EffectiveLength(15), of_figure),
-        case("leff-30+30-f32", "step_leff_60_f32", EffectiveLength(30), of_figure),
+        case("discrete-3+3-f32", "step_discrete_6_f32", Discrete(3), figure),
+        case("discrete-6+6-f32", "step_discrete_12_f32", Discrete(6), figure),
+        case("discrete-15+15-f32", "step_discrete_30_f32", Discrete(15), figure),
+        case("leff-1+1-f32", "step_leff_2_f32", EffectiveLength(1), figure),
+        case("leff-3+3-f32", "step_leff_6_f32", EffectiveLength(3), figure),
+        case("leff-6+6-f32", "step_leff_12_f32", EffectiveLength(6), figure),
+        case("leff-15+15-f32", "step_leff_30_f32", EffectiveLength(15), figure),
+        case("leff-30+30-f32", "step_leff_60_f32", EffectiveLength(30), figure),
     ]
 };
 
 impl Case {
-    /// The case of a name.
+    /// Looks up a case.
     pub fn named(name: &str) -> Option<&'static Case> {
         CASES.iter().find(|case| case.name == name)
     }
 
-    /// Its bit in the masks that go to the bench.
+    /// Its bit in [`Run::mask`].
     pub fn bit(&self) -> u32 {
         CASES.iter().position(|case| case == self).map_or(0, |index| 1 << index)
     }
 
-    /// Recruitment mode; none where it is no muscle.
+    /// Recruitment mode of the model or literal port; `None` for the other cases.
     pub fn mode(&self) -> Option<Mode> {
         match self.subject {
             Subject::Model(mode, _) | Subject::Literal(mode, _) => Some(mode),
@@ -106,7 +106,7 @@ impl Case {
         }
     }
 
-    /// What it is computed in.
+    /// Arithmetic.
     pub fn arithmetic(&self) -> Arithmetic {
         match self.subject {
             Subject::Model(_, arithmetic) | Subject::Literal(_, arithmetic) => arithmetic,
@@ -116,17 +116,17 @@ impl Case {
         }
     }
 
-    /// Whether it is the model, and thus held to a budget.
+    /// Whether it is the model, which has a budget.
     pub fn is_model(&self) -> bool {
         matches!(self.subject, Subject::Model(..))
     }
 
-    /// Whether it is in the README's table; the others are only for figure 7.
+    /// Whether it is listed in `docs/cycles.md`; the others serve figure 7 only.
     pub fn is_listed(&self) -> bool {
         !matches!(self.subject, Subject::EffectiveLength(_) | Subject::Discrete(3 | 6 | 15))
     }
 
-    /// The module whose constants are the tables of what it is computed in.
+    /// The module that holds the tables of its arithmetic.
     pub fn tables(&self) -> &'static str {
         match self.arithmetic() {
             Arithmetic::Fixed => "vm_nostd::scalar::fixed",
@@ -155,7 +155,7 @@ impl Case {
         bytes as u32
     }
 
-    /// Largest error of the force over the scenarios, % of F0; none where there is no force.
+    /// Largest force error over the scenarios, % of F0; `None` if the case computes no force.
     pub fn largest_error(
         &self,
         scenarios: &[Scenario],
@@ -181,18 +181,18 @@ impl Case {
                 Ok(ForceError::between(&computed, &expected, scenario.muscle.f0()).max)
             })
             .collect::<Result<_, RunError>>()?;
-        // A NaN is the largest error of all.
+        // NaN counts as the largest error.
         let larger = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
         Ok(Some(errors.into_iter().fold(0.0, larger)))
     }
 }
 
-/// The scenarios that accuracy is stated for: those of the paper's muscle at 1 kHz, as far as the
-/// bench's flash has room for them.
+/// The scenarios of the measured accuracy: the paper's muscle at 1 kHz, as many as fit into the
+/// bench's flash.
 pub fn scenarios() -> Vec<Scenario> {
     let paper = paper_muscle();
     let mut all = scenario::all();
-    // Ticks no harder than those of `velocity_kinks` and the adversarial runs.
+    // Their ticks are no more demanding than those of `velocity_kinks` and the adversarial run.
     let without = ["yield", "fast_ramps"];
     all.retain(|scenario| {
         let left_out = without.iter().any(|name| scenario.name.starts_with(name));
@@ -201,55 +201,53 @@ pub fn scenarios() -> Vec<Scenario> {
     all
 }
 
-/// A run of the bench: inputs, and the cases that are driven through them.
+/// A run of the bench: inputs and the cases that step through them.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The inputs; the first row is the muscle at rest.
+    /// The inputs; the muscle starts at rest on the first row.
     pub scenario: Scenario,
-    /// Bits of the cases.
+    /// Bits of the cases, see [`Case::bit`].
     pub mask: u32,
 }
 
 impl Run {
-    /// Ticks it lasts.
+    /// Length, ticks.
     pub fn ticks(&self) -> usize {
         self.scenario.trace.inputs.len() - 1
     }
 }
 
-/// The scenario that baselines are timed on: 0.6 of activation, 20 pps and a path that swings at
-/// 10 Hz.
+/// The scenario of the baselines: activation 0.6, 20 pps and a sinusoidal path at 10 Hz.
 const BASELINE_SCENARIO: &str = "length_10hz";
 
-/// All runs of the bench, in its order.
+/// All runs of the bench, in order of execution.
 pub fn runs() -> Vec<Run> {
     let scenarios = scenarios();
     let all = CASES.iter().filter(|case| case.ticks.is_none());
     let mask = all.fold(0, |mask, case| mask | case.bit());
-    let of_baseline = scenarios.iter().find(|scenario| scenario.name == BASELINE_SCENARIO).cloned();
+    let baseline = scenarios.iter().find(|scenario| scenario.name == BASELINE_SCENARIO).cloned();
     let excerpts = CASES.iter().filter_map(|case| {
-        let mut scenario = of_baseline.clone()?;
+        let mut scenario = baseline.clone()?;
         scenario.trace.inputs.truncate(case.ticks? + 1);
         Some(Run { scenario, mask: case.bit() })
     });
     let excerpts: Vec<Run> = excerpts.collect();
-    let hurting = adversarial::scenario();
     scenarios
         .into_iter()
-        .chain([hurting])
+        .chain([adversarial::scenario()])
         .map(|scenario| Run { scenario, mask })
         .chain(excerpts)
         .collect()
 }
 
-/// The runs that some of the cases are driven through.
+/// The runs of some of the cases.
 pub fn runs_of(cases: &[Case]) -> Vec<Run> {
     let wanted = cases.iter().fold(0, |mask, case| mask | case.bit());
     let all = runs().into_iter().map(|run| Run { mask: run.mask & wanted, ..run });
     all.filter(|run| run.mask != 0).collect()
 }
 
-/// The literal port's forces on a scenario, N; its muscle is the paper's.
+/// Forces of the literal port on a scenario of the paper's muscle, N.
 fn literal_forces<R: Real + Into<f64>>(mode: Mode, steps: u32, scenario: &Scenario) -> Vec<f64> {
     let inputs = &scenario.trace.inputs;
     let mut muscle = LiteralMuscle::<R>::at_rest(R::of(inputs[0].path_length), steps);
@@ -288,13 +286,13 @@ mod tests {
     }
 
     #[test]
-    fn the_literal_port_takes_no_more_steps_than_it_needs() {
+    fn the_literal_port_takes_the_fewest_stable_steps() {
         assert!(error_with(STABLE_STEPS) <= 0.1, "stable");
-        assert!(error_with(STABLE_STEPS - 1) > 0.1, "a step fewer is not");
+        assert!(error_with(STABLE_STEPS - 1) > 0.1, "one step fewer is unstable");
     }
 
     #[test]
-    fn cases_are_their_own() {
+    fn names_and_functions_are_unique() {
         for case in &CASES {
             assert_eq!(Case::named(case.name), Some(case));
             assert_eq!(CASES.iter().filter(|other| other.function == case.function).count(), 1);
@@ -302,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn the_model_is_driven_through_ten_thousand_ticks_and_baselines_through_an_excerpt() {
+    fn the_model_runs_at_least_ten_thousand_ticks_and_baselines_an_excerpt() {
         for case in &CASES {
             let runs = runs();
             let of_case = runs.iter().filter(|run| run.mask & case.bit() != 0);

@@ -1,4 +1,4 @@
-//! The cores that cycles are counted for.
+//! The cores with a timing model.
 
 use super::instruction::Class;
 use crate::engine;
@@ -35,10 +35,10 @@ pub enum Core {
 }
 
 impl Core {
-    /// All of them.
+    /// All cores.
     pub const ALL: [Self; 3] = [Self::CortexM4F, Self::CortexM3, Self::CortexM0Plus];
 
-    /// Its name, as in the table, the budgets and on the command line.
+    /// Its name in tables and budgets and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::CortexM4F => "cortex-m4f",
@@ -47,7 +47,7 @@ impl Core {
         }
     }
 
-    /// The accuracy class that its table is in: the M0+ has time for the economy class only.
+    /// The accuracy class of its rows: the M0+ is fast enough for the economy class only.
     pub fn class(self) -> engine::Class {
         match self {
             Self::CortexM4F | Self::CortexM3 => engine::Class::Standard,
@@ -55,8 +55,8 @@ impl Core {
         }
     }
 
-    /// The emulated board that runs its programs. There is none with an M0+: its instructions are
-    /// among those of an M3, whose board has more memory than the only one with an M0.
+    /// The emulated board that runs its programs. QEMU has no board with an M0+. Its instructions
+    /// are a subset of the M3's, whose board has more memory than the only one with an M0.
     pub fn board(self) -> Board {
         match self {
             Self::CortexM4F => target::STM32F405,
@@ -67,7 +67,7 @@ impl Core {
         }
     }
 
-    /// Whether it has instructions of a class.
+    /// Whether the core has the instructions of a class.
     pub(super) fn executes(self, class: Class) -> bool {
         match class {
             Class::Float
@@ -90,12 +90,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_core_has_one_name_everywhere() {
+    fn names_agree_in_json_and_on_the_command_line() {
         for core in Core::ALL {
-            let of_json = serde_json::to_string(&core).expect("a name");
-            let of_command_line = clap::ValueEnum::to_possible_value(&core).expect("a name");
-            assert_eq!(of_json.trim_matches('"'), core.name());
-            assert_eq!(of_command_line.get_name(), core.name());
+            let json = serde_json::to_string(&core).expect("a name");
+            let command_line = clap::ValueEnum::to_possible_value(&core).expect("a name");
+            assert_eq!(json.trim_matches('"'), core.name());
+            assert_eq!(command_line.get_name(), core.name());
         }
     }
 }

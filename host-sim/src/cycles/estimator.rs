@@ -1,8 +1,8 @@
 //! Adds up cycles over executed blocks.
 //!
-//! What a block costs depends on its instructions, on what the pipelines were left with before it
-//! and on whether its last branch is taken. Each such passage is timed instruction by instruction
-//! when it is first met, and looked up from then on.
+//! The cost of a block depends on its instructions, on the state of the pipelines before it and on
+//! whether its last branch is taken. Each such passage is timed instruction by instruction when it
+//! is first executed, and cached.
 
 use super::core::Core;
 use super::image::Image;
@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 /// The settings, in the order of [`Cost::cycles`].
 pub const SETTINGS: [Setting; 3] = [Setting::Optimistic, Setting::Typical, Setting::Pessimistic];
 
-/// A pipeline in each setting.
+/// One pipeline per setting.
 type Pipelines = [Pipeline; 3];
 
 /// Cost of one call.
@@ -27,12 +27,12 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Adds another cost.
+    /// Adds a cost.
     pub fn add(&mut self, other: &Cost) {
         self.add_times(other, 1);
     }
 
-    /// Adds another cost several times.
+    /// Adds a multiple of a cost.
     pub fn add_times(&mut self, other: &Cost, times: u64) {
         self.instructions += other.instructions * times;
         for (sum, cycles) in self.cycles.iter_mut().zip(other.cycles) {
@@ -41,7 +41,7 @@ impl Cost {
     }
 }
 
-/// The instructions of an image, each decoded when it is first met.
+/// The instructions of an image, decoded on first use.
 pub struct Decoded<'a> {
     image: &'a Image,
     core: Core,
@@ -50,12 +50,12 @@ pub struct Decoded<'a> {
 }
 
 impl<'a> Decoded<'a> {
-    /// Nothing decoded yet of an image for a core.
+    /// An empty cache of decoded instructions.
     pub fn new(image: &'a Image, core: Core) -> Result<Self, capstone::Error> {
         Ok(Self { image, core, decoder: Decoder::new()?, instructions: FxHashMap::default() })
     }
 
-    /// The instruction at an address, or the address if there is none that the core has.
+    /// The instruction at an address; the address as error if the core has no such instruction.
     pub fn at(&mut self, address: u32) -> Result<&Instruction, u32> {
         use std::collections::hash_map::Entry;
         match self.instructions.entry(address) {
@@ -82,26 +82,26 @@ impl<'a> Decoded<'a> {
     }
 }
 
-/// What tells one passage through a block from another.
+/// The cache key: everything that the cost of a block depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Passage {
     block: Block,
-    /// Number of the state that the pipelines are in before.
+    /// Index of the pipeline state before the block.
     before: u32,
-    /// Whether its last instruction branches.
+    /// Whether its last branch is taken.
     taken: bool,
 }
 
-/// What is known of a passage.
+/// The cached cost of a passage.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     cost: Cost,
-    /// Number of the state that the pipelines are in after.
+    /// Index of the pipeline state after the block.
     after: u32,
-    /// Change of the stack pointer, and the lowest that it gets on the way, bytes.
+    /// Change of the stack pointer and its minimum within the block, relative to entry, bytes.
     stack: i32,
     lowest: i32,
-    /// How often it was met while counting.
+    /// Number of executions while counting.
     times: u64,
 }
 
@@ -111,27 +111,27 @@ pub struct Estimator {
     states: Vec<Pipelines>,
     numbers: FxHashMap<Pipelines, u32>,
     passages: FxHashMap<Passage, Known>,
-    /// State that the pipelines are in.
+    /// Index of the current pipeline state.
     current: u32,
     cost: Cost,
     stack: i32,
-    /// Deepest stack so far, bytes.
+    /// Stack high watermark, bytes.
     deepest: i32,
-    /// Whether passages are counted.
+    /// Whether executions are counted.
     counting: bool,
 }
 
 impl Estimator {
-    /// Begins a call; `counting`: its instructions go into [`Estimator::executions`].
+    /// Begins a call; `counting` includes its instructions in [`Estimator::executions`].
     pub fn begin(&mut self, counting: bool) {
-        self.current = number(&mut self.states, &mut self.numbers, Pipelines::default());
+        self.current = index_of(&mut self.states, &mut self.numbers, Pipelines::default());
         self.cost = Cost::default();
         self.stack = 0;
         self.counting = counting;
     }
 
-    /// Passes through a block; `next` is where the one after it begins. An address at which there
-    /// is no instruction is returned as an error.
+    /// Adds the cost of a block; `next` is the start of the block after it. An address without an
+    /// instruction is returned as an error.
     pub fn pass(&mut self, block: Block, next: u32, decoded: &mut Decoded<'_>) -> Result<(), u32> {
         let last = decoded.at(block.last)?;
         let taken = next != block.last.wrapping_add(last.size);
@@ -151,17 +151,17 @@ impl Estimator {
         Ok(())
     }
 
-    /// Ends a call and returns what it cost.
+    /// Ends a call and returns its cost.
     pub fn end(&mut self) -> Cost {
         self.cost
     }
 
-    /// Deepest stack of all calls, below their caller's, bytes.
+    /// Stack high watermark over all calls, below the caller's frame, bytes.
     pub fn stack_bytes(&self) -> u32 {
         u32::try_from(self.deepest).unwrap_or(0)
     }
 
-    /// Every block that was passed through, counted or not.
+    /// Every executed block, counted or not.
     pub fn blocks(&self) -> impl Iterator<Item = Block> {
         self.passages.keys().map(|passage| passage.block)
     }
@@ -176,11 +176,11 @@ impl Estimator {
             stack += instruction.stack_change;
             lowest = lowest.min(stack);
         }
-        let after = number(&mut self.states, &mut self.numbers, pipelines);
+        let after = index_of(&mut self.states, &mut self.numbers, pipelines);
         Ok(Known { cost, after, stack, lowest, times: 0 })
     }
 
-    /// Every counted instruction: how often it was executed and what it cost in all.
+    /// Every counted instruction, its execution count and its total cost.
     pub fn executions(
         &self,
         decoded: &mut Decoded<'_>,
@@ -201,7 +201,7 @@ impl Estimator {
     }
 }
 
-/// What each instruction of a passage costs.
+/// Cost of each instruction of a passage.
 fn costs(
     passage: Passage,
     pipelines: &mut Pipelines,
@@ -223,8 +223,8 @@ fn costs(
         .collect())
 }
 
-/// The number of a state, a new one if it was not met before.
-fn number(
+/// Index of a pipeline state, assigned on first use.
+fn index_of(
     states: &mut Vec<Pipelines>,
     numbers: &mut FxHashMap<Pipelines, u32>,
     state: Pipelines,

@@ -1,4 +1,4 @@
-//! Follows the calls of some functions through the execution of an image.
+//! Times the calls of some functions during the execution of an image.
 
 use super::core::Core;
 use super::estimator::{Cost, Decoded, Estimator};
@@ -8,13 +8,13 @@ use super::trace::{Block, Program, TraceError, Tracer, execute};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// Why nothing was measured.
+/// Why a call could not be timed.
 #[derive(Debug, thiserror::Error)]
 pub enum FollowError {
     /// The trace failed.
     #[error(transparent)]
     Trace(#[from] TraceError),
-    /// The image is not what it should be.
+    /// The image could not be read, or has no such function.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// The decoder could not be set up.
@@ -23,7 +23,7 @@ pub enum FollowError {
     /// An instruction could not be decoded.
     #[error("no instruction of a {} at {address:#010x}", core.name())]
     Decode {
-        /// Where.
+        /// Address of the instruction.
         address: u32,
         /// The core.
         core: Core,
@@ -43,7 +43,7 @@ pub enum FollowError {
     Endless {
         /// The program.
         program: PathBuf,
-        /// How long it was let run, s.
+        /// Timeout, s.
         seconds: u64,
         /// The function.
         function: String,
@@ -52,23 +52,24 @@ pub enum FollowError {
     },
 }
 
-/// What was seen of a function.
+/// Measurements of one function.
 #[derive(Clone, Debug)]
 pub struct Followed {
     /// Cost of each call, from its first instruction to its return.
     pub calls: Vec<Cost>,
-    /// Deepest stack below the caller's, bytes, as pushes, pops and changes by constants show it.
+    /// Stack high watermark below the caller's frame, bytes. Pushes, pops and constant changes of
+    /// the stack pointer are tracked.
     pub stack_bytes: u32,
-    /// Address and bytes of all functions that were executed.
+    /// Address and size in bytes of every executed function.
     pub code: BTreeSet<(u32, u32)>,
-    /// Whether the program was stopped when its time was up.
+    /// Whether the program was stopped at its timeout.
     pub stopped: bool,
-    /// Every counted instruction: how often it was executed, and what it cost in all.
+    /// Every counted instruction, its execution count and its total cost.
     pub executions: Vec<(Instruction, u64, Cost)>,
 }
 
 impl Followed {
-    /// Bytes of all functions that were executed.
+    /// Total size of the executed functions, bytes.
     pub fn code_bytes(&self) -> u32 {
         self.code.iter().map(|(_, bytes)| bytes).sum()
     }
@@ -100,10 +101,10 @@ struct Follower<'a> {
 }
 
 impl Follower<'_> {
-    fn see(&mut self, block: Block) -> Result<(), u32> {
+    fn observe(&mut self, block: Block) -> Result<(), u32> {
         let Some(before) = self.before.replace(block) else { return Ok(()) };
         if let Some(Call { function, returns_to }) = self.call {
-            // The block before is timed now that it is known where it led.
+            // Whether the previous block's branch was taken is only known now.
             let estimator = &mut self.estimators[function];
             estimator.pass(before, block.first, &mut self.decoded)?;
             if block.first == returns_to {
@@ -128,8 +129,8 @@ impl Follower<'_> {
     }
 }
 
-/// Runs a program, of which `image` is the code, and times every call of the functions. A call
-/// inside of another one's is part of that.
+/// Runs a program with the code of `image` and times every call of the functions. Nested calls are
+/// charged to the outermost call.
 pub fn follow(
     image: &Image,
     program: &Program<'_>,
@@ -153,7 +154,7 @@ pub fn follow(
     let mut undecodable = None;
     let executed = execute(program, tracer, |block| {
         if undecodable.is_none() {
-            undecodable = follower.see(block).err();
+            undecodable = follower.observe(block).err();
         }
     });
     let stopped = match executed {

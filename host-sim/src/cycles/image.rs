@@ -1,4 +1,4 @@
-//! A program's image: where its functions are, and the code at an address.
+//! A program's image: its sections, functions and code.
 
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
 use std::path::{Path, PathBuf};
@@ -11,26 +11,26 @@ pub enum ImageError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// It is not an ELF file.
+    /// The file is not a valid ELF file.
     #[error("{}: {source}", path.display())]
     Parse {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the parser.
         source: object::Error,
     },
-    /// What it says of its source could not be read.
-    #[error("{}: where its code comes from: {reason}", path.display())]
+    /// The debug information could not be read.
+    #[error("{}: debug information: {reason}", path.display())]
     Lines {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the reader.
         reason: String,
     },
-    /// No function has the name, or several have.
+    /// No function or several functions match the name.
     #[error("{} functions are named \"{name}\" in the image{}", candidates.len(), list(candidates))]
     Function {
         /// The name.
@@ -40,7 +40,7 @@ pub enum ImageError {
     },
 }
 
-/// Functions with what tells them apart: their addresses and symbols.
+/// Lists functions of equal name with their addresses and symbols.
 fn list(candidates: &[Function]) -> String {
     let Some(first) = candidates.first() else { return String::new() };
     let each = |one: &Function| format!("\n  {:#010x} {} ({})", one.address, one.name, one.symbol);
@@ -51,9 +51,9 @@ fn list(candidates: &[Function]) -> String {
 /// A function of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
-    /// Name, as in the source.
+    /// Demangled name.
     pub name: String,
-    /// Name in the image: with the hash of a function of Rust.
+    /// Mangled name; in Rust it contains a hash.
     pub symbol: String,
     /// First address.
     pub address: u32,
@@ -61,7 +61,7 @@ pub struct Function {
     pub size: u32,
 }
 
-/// A section of the image that has addresses.
+/// A loaded section of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Name.
@@ -79,13 +79,13 @@ pub struct Image {
     pub path: PathBuf,
     /// Address and content of each section.
     sections: Vec<(u32, Vec<u8>)>,
-    /// All sections that have addresses, those without a content as well.
+    /// All loaded sections, including those without content.
     places: Vec<Section>,
-    /// Where code begins behind data, in order.
+    /// Sorted addresses at which code begins after data.
     code_begins: Vec<u32>,
-    /// By address.
+    /// Sorted by address.
     functions: Vec<Function>,
-    /// Name and bytes of each constant.
+    /// Name and size in bytes of each constant.
     constants: Vec<(String, u32)>,
 }
 
@@ -98,7 +98,7 @@ impl Image {
         let file = object::File::parse(&*bytes).map_err(parse)?;
         let (mut sections, mut places) = (Vec::new(), Vec::new());
         for section in file.sections() {
-            // What is not loaded has no address.
+            // Sections that are not loaded have address 0.
             if section.address() != 0 {
                 let content = section.data().map_err(parse)?.to_vec();
                 let (address, size) = (section.address() as u32, section.size() as u32);
@@ -109,7 +109,7 @@ impl Image {
         }
         let mut functions: Vec<Function> = file
             .symbols()
-            // Assembly may leave a function's type out; "$t" and its like mark kinds of content.
+            // Assembly may omit the symbol type. Symbols with "$" mark code and data.
             .filter(|symbol| matches!(symbol.kind(), SymbolKind::Text | SymbolKind::Unknown))
             .filter(|symbol| {
                 let section = symbol.section_index().and_then(|s| file.section_by_index(s).ok());
@@ -118,7 +118,7 @@ impl Image {
             .filter_map(|symbol| {
                 let mangled = symbol.name().ok().filter(|name| !name.starts_with('$'))?;
                 let name = format!("{:#}", rustc_demangle::demangle(mangled));
-                // Bit 0 of a function's address says that its code is Thumb.
+                // Bit 0 of the address marks Thumb code.
                 let address = symbol.address() as u32 & !1;
                 let (symbol, size) = (mangled.to_owned(), symbol.size() as u32);
                 Some(Function { name, symbol, address, size })
@@ -140,11 +140,11 @@ impl Image {
                 Some((name, symbol.size() as u32))
             })
             .collect();
-        // Of several at one address, the one that knows its size.
+        // Of several symbols at one address, keep the one that states its size.
         functions.sort_by_key(|function| (function.address, function.size == 0));
         functions.dedup_by_key(|function| function.address);
         for index in 0..functions.len() {
-            // One whose size is not given ends where the next one begins.
+            // A function without a size ends where the next one begins.
             if functions[index].size == 0 {
                 let address = functions[index].address;
                 let next = functions.get(index + 1).map_or(u32::MAX, |next| next.address);
@@ -156,7 +156,7 @@ impl Image {
         Ok(Self { path, sections, places, code_begins, functions, constants })
     }
 
-    /// Bytes of all constants of a module and those in it.
+    /// Total size of the constants of a module and its submodules, bytes.
     pub fn constant_bytes(&self, module: &str) -> u32 {
         let inside = format!("{module}::");
         let of_module = self.constants.iter().filter(|(name, _)| name.starts_with(&inside));
@@ -168,8 +168,8 @@ impl Image {
         self.sections.push((address, code));
     }
 
-    /// The one function whose name is `name` or ends with `::name`, whose symbol it is, or which
-    /// begins at the address that it gives in hexadecimal (0x...).
+    /// Looks up a function by its name, the end of its path (`::name`), its symbol or its
+    /// hexadecimal address (0x...).
     pub fn function(&self, name: &str) -> Result<&Function, ImageError> {
         let ending = format!("::{name}");
         let address = name.strip_prefix("0x").map(|digits| digits.replace('_', ""));
@@ -189,36 +189,36 @@ impl Image {
         }
     }
 
-    /// All sections that have addresses.
+    /// All loaded sections.
     pub fn sections(&self) -> &[Section] {
         &self.places
     }
 
-    /// Where code begins, at an address or behind it; none if the image does not say.
+    /// The first start of code at or after an address; `None` if the image marks none.
     pub fn code_behind(&self, address: u32) -> Option<u32> {
         let index = self.code_begins.partition_point(|&begin| begin < address);
         self.code_begins.get(index).copied()
     }
 
-    /// The word at an address, if there is one.
+    /// The 32-bit word at an address.
     pub fn word_at(&self, address: u32) -> Option<u32> {
         self.code_at(address).try_into().ok().map(u32::from_le_bytes)
     }
 
-    /// The function that an address is in.
+    /// The function that contains an address.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let after = self.functions.partition_point(|function| function.address <= address);
         let function = self.functions.get(after.checked_sub(1)?)?;
         (address < function.address + function.size).then_some(function)
     }
 
-    /// The code at an address: what an instruction may take, or less where a section ends.
+    /// Up to four bytes of code at an address, the longest instruction; fewer at a section's end.
     pub fn code_at(&self, address: u32) -> &[u8] {
         self.sections
             .iter()
             .find_map(|(start, content)| {
                 let offset = address.checked_sub(*start)? as usize;
-                // Where one section ends, the next may begin.
+                // An address at the end of one section may be the start of the next.
                 content.get(offset..).filter(|code| !code.is_empty())
             })
             .map_or(&[], |code| &code[..code.len().min(4)])
@@ -227,7 +227,7 @@ impl Image {
 
 #[cfg(test)]
 impl Image {
-    /// Functions one behind the other, each by its name and halfwords.
+    /// An image of consecutive functions, given by name and halfwords.
     pub(crate) fn of_code(address: u32, functions: &[(&str, &[u16])]) -> Self {
         let mut code = Vec::new();
         let functions = functions
@@ -251,7 +251,7 @@ impl Image {
     }
 }
 
-/// The end of the section that an address is in.
+/// The end of the section that contains an address.
 fn section_end(sections: &[(u32, Vec<u8>)], address: u32) -> u32 {
     let ends = sections.iter().map(|(start, content)| (*start, start + content.len() as u32));
     ends.filter(|(start, end)| (*start..*end).contains(&address))

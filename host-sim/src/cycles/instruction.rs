@@ -1,10 +1,10 @@
-//! A decoded instruction, reduced to what its time depends on.
+//! A decoded instruction, reduced to the properties that determine its timing.
 
 use capstone::arch::ArchOperand;
 use capstone::arch::arm::{ArchExtraMode, ArchMode, ArmOperandType};
 use capstone::prelude::*;
 
-/// What kind of work an instruction does.
+/// Timing class of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Class {
     /// Integer arithmetic, logic, moves, multiplications of one word.
@@ -23,96 +23,96 @@ pub enum Class {
     Store,
     /// STR with a register as offset.
     StoreByRegister,
-    /// LDM, POP, LDRD, VLDM and the like: words.
+    /// LDM, POP, LDRD, VLDM and similar, with the number of words.
     LoadMany(u32),
-    /// STM, PUSH, STRD, VSTM and the like: words.
+    /// STM, PUSH, STRD, VSTM and similar, with the number of words.
     StoreMany(u32),
     /// B, conditional or not, CBZ, CBNZ.
     Branch,
     /// BL.
     Call,
-    /// BX, BLX, and what else writes the program counter from a register or table.
+    /// BX, BLX, TBB and TBH: the target comes from a register or a table.
     BranchToRegister,
     /// IT.
     IfThen,
-    /// VADD, VSUB, VMUL, VCVT: a result that the next instruction may have to wait for.
+    /// VADD, VSUB, VMUL, VCVT: the next instruction may stall on the result.
     Float,
-    /// VABS, VNEG, VCMP, VMOV, VMRS: no such wait.
+    /// VABS, VNEG, VCMP, VMOV, VMRS: no such stall.
     FloatMove,
     /// VMOV between two core registers and the floating-point unit.
     FloatMoveTwo,
-    /// VMLA, VFMA and the like.
+    /// VMLA, VFMA and similar.
     FloatMultiplyAccumulate,
     /// VDIV and VSQRT.
     FloatDivide,
 }
 
-/// Registers as bits: r0..r15, then s0..s31.
+/// A set of registers as bits: r0..r15, then s0..s31.
 pub type Registers = u64;
 
 const PROGRAM_COUNTER: Registers = 1 << 15;
 const LINK_REGISTER: Registers = 1 << 14;
 
-/// A place in memory, as an instruction names it.
+/// A memory operand: base and index registers plus displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// Registers that are added up.
+    /// Base and index registers.
     pub registers: Registers,
-    /// Bytes on top.
+    /// Displacement, bytes.
     pub displacement: i32,
 }
 
 /// One instruction at one address.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
-    /// Where it is.
+    /// Address.
     pub address: u32,
-    /// Bytes, 2 or 4.
+    /// Size, 2 or 4 bytes.
     pub size: u32,
-    /// Kind of work.
+    /// Timing class.
     pub class: Class,
-    /// Registers whose values it takes, but for addresses.
+    /// Registers it reads, except for addresses.
     pub reads: Registers,
-    /// Registers it makes an address from.
+    /// Registers it forms addresses from.
     pub addresses: Registers,
-    /// Where it loads from or stores to, if it leaves the address as it was.
+    /// Memory operand; `None` if the instruction writes one of its address registers.
     pub place: Option<Place>,
     /// Registers it writes.
     pub writes: Registers,
     /// Change of the stack pointer, bytes.
     pub stack_change: i32,
-    /// As a disassembler prints it.
+    /// Disassembly.
     pub text: String,
 }
 
 impl Instruction {
-    /// Whether it writes the program counter, as a POP that returns does.
+    /// Whether it writes the program counter, such as a POP that returns.
     pub fn writes_program_counter(&self) -> bool {
         self.writes & PROGRAM_COUNTER != 0
     }
 
-    /// What it does, without its operands.
+    /// Mnemonic.
     pub fn mnemonic(&self) -> &str {
         self.text.split(' ').next().unwrap_or(&self.text)
     }
 
-    /// The address that a branch or call names.
+    /// Target address of a direct branch or call.
     pub fn target(&self) -> Option<u32> {
         let digits = self.text.rsplit("#0x").next()?;
         u32::from_str_radix(digits, 16).ok()
     }
 
-    /// Whether it is a load or store of one word, that can be pipelined with another.
+    /// Whether it is a single load or store, which can be pipelined with another.
     pub fn is_single_access(&self) -> bool {
         matches!(self.class, Class::Load | Class::Store)
     }
 }
 
-/// Turns machine code into instructions.
+/// Disassembler.
 pub struct Decoder(Capstone);
 
 impl Decoder {
-    /// A decoder for the instructions of a Cortex-M4F, those of an M3 and an M0+ among them.
+    /// A decoder for a Cortex-M4F, whose instruction set includes those of an M3 and an M0+.
     pub fn new() -> Result<Self, capstone::Error> {
         let capstone = Capstone::new()
             .arm()
@@ -123,7 +123,7 @@ impl Decoder {
         Ok(Self(capstone))
     }
 
-    /// The instruction that `code` begins with; `None` if it is none.
+    /// Decodes the first instruction of `code`; `None` if it is invalid.
     pub fn decode(&self, code: &[u8], address: u32) -> Option<Instruction> {
         let decoded = self.0.disasm_count(code, u64::from(address), 1).ok()?;
         let instruction = decoded.iter().next()?;
@@ -170,7 +170,7 @@ impl Decoder {
         })
     }
 
-    /// The bits of a register, by its name.
+    /// The bits of a register.
     fn bits(&self, register: RegId) -> Registers {
         let Some(name) = self.0.reg_name(register) else { return 0 };
         match name.as_str() {
@@ -194,7 +194,7 @@ impl Decoder {
     }
 }
 
-/// Words in a list of registers such as "{r4, r5, lr}" or "{d8, d9}".
+/// Number of words in a register list such as "{r4, r5, lr}" or "{d8, d9}".
 fn words_in_list(operands: &str) -> u32 {
     let Some((_, list)) = operands.split_once('{') else { return 0 };
     let names = list.trim_end_matches('}').split(',');
@@ -202,8 +202,8 @@ fn words_in_list(operands: &str) -> u32 {
 }
 
 fn classify(mnemonic: &str, operands: &str) -> Class {
-    // "vadd.f32", "ldr.w", "beq.w": what follows the dot is size or type, and before it may
-    // stand a condition.
+    // "vadd.f32", "ldr.w", "beq.w": the suffix after the dot is a size or type; the name may end
+    // with a condition.
     let (name, kind) = mnemonic.split_once('.').unwrap_or((mnemonic, ""));
     let double = kind.contains("f64") || operands.starts_with('d');
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
@@ -259,10 +259,10 @@ fn classify(mnemonic: &str, operands: &str) -> Class {
     }
 }
 
-/// Change of the stack pointer that an instruction makes, bytes.
+/// Change of the stack pointer by an instruction, bytes.
 fn stack_change(mnemonic: &str, operands: &str) -> i32 {
     let name = mnemonic.split('.').next().unwrap_or(mnemonic);
-    let of_list = 4 * words_in_list(operands) as i32;
+    let list = 4 * words_in_list(operands) as i32;
     let on_stack = operands.starts_with("sp!");
     let immediate = || {
         let text = operands.rsplit('#').next().unwrap_or("").trim_end_matches(['!', ']']);
@@ -273,13 +273,13 @@ fn stack_change(mnemonic: &str, operands: &str) -> i32 {
         sign * value.unwrap_or(0)
     };
     match name {
-        "push" | "vpush" => -of_list,
-        "pop" | "vpop" => of_list,
-        _ if on_stack && (name.starts_with("stm") || name.starts_with("vstm")) => -of_list,
-        _ if on_stack && (name.starts_with("ldm") || name.starts_with("vldm")) => of_list,
+        "push" | "vpush" => -list,
+        "pop" | "vpop" => list,
+        _ if on_stack && (name.starts_with("stm") || name.starts_with("vstm")) => -list,
+        _ if on_stack && (name.starts_with("ldm") || name.starts_with("vldm")) => list,
         "sub" | "subw" if operands.starts_with("sp,") => -immediate(),
         "add" | "addw" if operands.starts_with("sp,") => immediate(),
-        // Stores and loads that write the stack pointer back, before or after.
+        // Pre- and post-indexed loads and stores with sp as base.
         _ if operands.contains("[sp, #") && operands.ends_with('!') => immediate(),
         _ if operands.contains("[sp], #") => immediate(),
         _ => 0,
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn instructions_are_told_apart_by_what_their_time_depends_on() {
+    fn instructions_are_classified_by_timing() {
         let cases: &[(&[u16], &str, Class)] = &[
             (&[0xEE20, 0x0A20], "vmul.f32 s0, s0, s1", Class::Float),
             (&[0xEEA0, 0x0A81], "vfma.f32 s0, s1, s2", Class::FloatMultiplyAccumulate),
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn registers_are_read_written_and_made_addresses_of() {
+    fn read_written_and_address_registers_are_decoded() {
         let multiply = decode(&[0xEE20, 0x0A20]);
         assert_eq!((multiply.writes, multiply.reads), (1 << 16, 0b11 << 16));
         let load = decode(&[0x6808]);
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn the_stack_pointer_is_followed() {
+    fn changes_of_the_stack_pointer_are_decoded() {
         let cases: &[(&[u16], i32)] = &[
             (&[0xB5F0], -20),
             (&[0xBD10], 8),

@@ -1,5 +1,5 @@
-//! A closer look at one function: a case of the bench, a single tick of it, or any function of any
-//! Cortex-M image.
+//! Profiles one function: a case of the bench, a single tick of it, or any function of any Cortex-M
+//! image.
 
 use super::bench::{BenchError, measure};
 use super::boot::{self, Argument, BootError};
@@ -18,13 +18,13 @@ use crate::target;
 use std::path::Path;
 use std::time::Duration;
 
-/// Why there is no profile.
+/// Why a function could not be profiled.
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
-    /// There is no such case.
+    /// Unknown case.
     #[error("--case {0}: must be one of {names}", names = CASES.map(|case| case.name).join(", "))]
     NoCase(String),
-    /// The case has fewer ticks.
+    /// Tick out of range.
     #[error("--tick {tick}: {case} has ticks 0 to {last}")]
     NoTick {
         /// The tick.
@@ -37,7 +37,7 @@ pub enum ProfileError {
     /// The bench could not be run.
     #[error(transparent)]
     Bench(#[from] BenchError),
-    /// The image could not be followed.
+    /// The image could not be traced or timed.
     #[error(transparent)]
     Follow(#[from] FollowError),
     /// The function cannot be called directly.
@@ -48,26 +48,26 @@ pub enum ProfileError {
     Image(#[from] ImageError),
 }
 
-/// What was seen of a function.
+/// The profile of a function.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// What it is of.
+    /// Title for printing.
     pub title: String,
-    /// Whether the program was stopped when its time was up.
+    /// Whether the program was stopped at its timeout.
     pub stopped: bool,
     /// Cost of each call.
     pub calls: Vec<Cost>,
-    /// Deepest stack, bytes.
+    /// Stack high watermark, bytes.
     pub stack_bytes: u32,
-    /// Executed code, whole functions, bytes.
+    /// Total size of the executed functions, bytes.
     pub code_bytes: u32,
     /// Cost of each function.
     pub functions: Vec<Part>,
-    /// Cost of what is in each file of the model.
+    /// Cost of each source file of the model.
     pub files: Vec<Part>,
     /// Cost of each class of instruction.
     pub classes: Vec<Part>,
-    /// Every executed instruction, with how often it was and its cost in all.
+    /// Every executed instruction, its execution count and its total cost.
     pub executions: Vec<(Instruction, u64, Cost)>,
 }
 
@@ -87,8 +87,8 @@ impl Profile {
     }
 }
 
-/// A case of the bench on a core: all its ticks, or one of them, which is reached as fast as may
-/// be.
+/// Profiles a case of the bench on a core: all ticks, or one tick. For one tick only the inputs up
+/// to it are run.
 pub fn of_case(
     core: Core,
     name: &str,
@@ -110,12 +110,12 @@ pub fn of_case(
         let Input { activation, path_length, stimulation_frequency } =
             run.scenario.trace.inputs[row];
         title = format!(
-            "{name} on a {}, tick {tick}: row {row} of {} (activation {activation}, path {path_length} m, \
-             {stimulation_frequency} pps)",
+            "{name} on a {}, tick {tick}: row {row} of {} (activation {activation}, \
+             path {path_length} m, {stimulation_frequency} pps)",
             core.name(),
             run.scenario.name
         );
-        // Rows before it are executed, to get to its state, and not counted.
+        // The rows before it are executed to reach its state, but not counted.
         count = Count::At(row - 1);
         runs = vec![run];
     }
@@ -129,7 +129,7 @@ pub fn of_case(
     Ok(Profile::new(title, &image, followed)?)
 }
 
-/// The run that a tick, counted from 0 over all of them, is in, and its row there.
+/// The run that contains a tick, counted from 0 over all runs, and its row in that run.
 fn locate(runs: &[Run], tick: usize) -> Option<(&Run, usize)> {
     let mut before = 0;
     for run in runs {
@@ -141,8 +141,8 @@ fn locate(runs: &[Run], tick: usize) -> Option<(&Run, usize)> {
     None
 }
 
-/// All calls of a function of an image that return before `timeout`, as its own program makes them;
-/// or one call that we make, with `arguments`.
+/// Profiles a function of an image: all calls by its own program that return before `timeout`, or,
+/// with `arguments`, one direct call.
 pub fn of_image(
     path: &Path,
     function: &str,
@@ -170,7 +170,7 @@ pub fn of_image(
     Ok(Profile::new(title, &image, followed)?)
 }
 
-/// The machine that images run on if no other is named.
+/// Default QEMU machine.
 pub const MACHINE: &str = target::STM32F405.machine;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What a function can execute: its own instructions and those of all that it calls.
+//! Static call graph: all instructions that a function can reach.
 
 use super::core::Core;
 use super::estimator::Decoded;
@@ -8,14 +8,14 @@ use super::instruction::Class;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// What can be reached from a function.
+/// The instructions reachable from a function.
 #[derive(Clone, Debug, Default)]
 pub struct Reached {
     /// Names of the functions.
     pub functions: BTreeSet<String>,
     /// Instructions of a floating-point unit, as text by address.
     pub floating_point: BTreeMap<u32, String>,
-    /// Branches whose target is not in the instruction: what is behind them is not known.
+    /// Indirect branches, whose targets are unknown.
     pub indirect: BTreeMap<u32, String>,
 }
 
@@ -41,15 +41,15 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
             reached.floating_point.insert(address, text.clone());
         }
         let next = address + instruction.size;
-        // Conditional branches, and those that an IT block makes conditional, may also go on: a
-        // step too many is harmless, one too few is not.
-        let (goes_on, target) = match instruction.class {
-            // A branch by a table (TBB, TBH), which follows.
+        // Conditional branches, also those in an IT block, may fall through. Following too many
+        // paths is harmless, missing one is not.
+        let (falls_through, target) = match instruction.class {
+            // Table branch (TBB, TBH); the table follows the instruction.
             _ if instruction.mnemonic().starts_with("tb") => {
                 reached.indirect.insert(address, text.clone());
                 (false, None)
             }
-            // A Cortex-M0 reaches far within a function by BL, and does not come back.
+            // On a Cortex-M0 BL is also the long jump within a function; it does not return.
             Class::Call => {
                 let target = instruction.target();
                 let home = image.function_at(address);
@@ -66,7 +66,7 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
                 reached.indirect.insert(address, text.clone());
                 (true, None)
             }
-            // A return, unless it is conditional.
+            // A POP of the program counter returns.
             Class::LoadMany(_) => (!instruction.writes_program_counter(), None),
             _ if instruction.writes_program_counter() => {
                 reached.indirect.insert(address, text.clone());
@@ -75,7 +75,7 @@ pub fn reachable(path: &Path, function: &str) -> Result<Reached, FollowError> {
             _ => (true, None),
         };
         ahead.extend(target);
-        ahead.extend(goes_on.then_some(next));
+        ahead.extend(falls_through.then_some(next));
     }
     Ok(reached)
 }

@@ -1,4 +1,4 @@
-//! The table of costs.
+//! Measures the table of costs.
 
 use super::bench::{BenchError, measure};
 use super::breakdown::{Part, by_class, by_file};
@@ -13,13 +13,13 @@ use crate::engine::{self, Arithmetic, Class, RunError};
 use crate::reference::Mode;
 use std::collections::BTreeSet;
 
-/// Why there is no table.
+/// Why the table could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The bench could not be run.
     #[error(transparent)]
     Bench(#[from] BenchError),
-    /// The bench does not say where its code comes from.
+    /// The debug information of the bench could not be read.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// A scenario could not be run on the host.
@@ -30,18 +30,18 @@ pub enum ReportError {
     Budgets(#[from] toml::de::Error),
 }
 
-/// Whether a case of a name is in the README's table.
+/// Whether a case is listed in `docs/cycles.md`.
 pub fn is_listed(case: &str) -> bool {
     Case::named(case).is_none_or(Case::is_listed)
 }
 
-/// Bytes of the state of a case of the model, and its budget.
+/// State size of a case of the model and its budget, bytes.
 pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
     let most = Budgets::read()?.state_bytes(case);
     Ok(Case::named(case).map(Case::state_bytes).zip(most))
 }
 
-/// What is measured on a core: everything on the M4F, on the others the model in fixed point.
+/// The cases measured on a core: all on the M4F, the model in fixed point on the others.
 pub(super) fn cases_on(core: Core) -> Vec<Case> {
     let wanted = |case: &&Case| {
         core == Core::CortexM4F || case.is_model() && case.arithmetic() == Arithmetic::Fixed
@@ -49,8 +49,8 @@ pub(super) fn cases_on(core: Core) -> Vec<Case> {
     CASES.iter().filter(wanted).copied().collect()
 }
 
-/// Measures all cases on all cores, in an accuracy class, or in that of each core; the model's are
-/// held to their budgets where the class is the core's.
+/// Measures all cases on all cores in an accuracy class, by default each core's own. Budgets are
+/// checked only in the core's own class.
 pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportError> {
     let budgets: Budgets = Budgets::read()?;
     let scenarios = case::scenarios();
@@ -83,7 +83,7 @@ pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportEr
     Ok(all)
 }
 
-/// The command that shows one tick of a case.
+/// The command that profiles one tick of a case.
 fn replay(core: Core, class: Class, case: &Case, tick: usize) -> String {
     let mut on = String::new();
     if core != Core::default() {
@@ -95,15 +95,15 @@ fn replay(core: Core, class: Class, case: &Case, tick: usize) -> String {
     format!("cargo vm cycles{on} --case {} --tick {tick}", case.name)
 }
 
-/// What a tick takes, by file and by class of instruction.
+/// Mean cost of a tick, by file and by class of instruction.
 fn shares(image: &Image, followed: &Followed) -> Result<(Vec<Share>, Vec<Share>), ImageError> {
-    let of_tick = |parts: Vec<Part>| {
+    let per_tick = |parts: Vec<Part>| {
         parts.into_iter().map(|part| Share::of(part, followed.calls.len())).collect()
     };
-    Ok((of_tick(by_file(image, &followed.executions)?), of_tick(by_class(&followed.executions))))
+    Ok((per_tick(by_file(image, &followed.executions)?), per_tick(by_class(&followed.executions))))
 }
 
-/// Bytes of code and tables of the model in a case's arithmetic, all its modes that are measured.
+/// Code and tables of all measured modes of the model in a case's arithmetic, bytes.
 fn both_modes_bytes(image: &Image, case: &Case, cases: &[Case], followed: &[Followed]) -> u32 {
     let alike = cases
         .iter()
@@ -114,7 +114,7 @@ fn both_modes_bytes(image: &Image, case: &Case, cases: &[Case], followed: &[Foll
     code.iter().map(|(_, bytes)| bytes).sum::<u32>() + image.constant_bytes(case.tables())
 }
 
-/// What a tick of the model costs in `f32` in a mode, the continuous one if none is named.
+/// Pessimistic maximum of the model in `f32` in a mode, by default the continuous one.
 fn cycles_of_model(rows: &[Row], mode: Option<Mode>) -> Option<u64> {
     let subject = Subject::Model(mode.unwrap_or(Mode::Continuous), Arithmetic::F32);
     let index = CASES.iter().position(|case| case.subject == subject)?;
@@ -130,7 +130,7 @@ fn row(core: Core, class: Class, case: &Case, followed: &Followed, max_pct_f0: O
         mode: case.mode().map_or("-", engine::mode_name).to_owned(),
         arithmetic: case.arithmetic().name().to_owned(),
         target: core,
-        class: class.name().to_owned(),
+        class,
         ticks: calls.len(),
         instructions_max: calls.iter().map(|cost| cost.instructions).max().unwrap_or(0),
         cycles_opt_mean: optimistic.mean,
@@ -185,11 +185,11 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_row_says_what_its_ticks_cost() {
+    fn a_row_summarises_its_ticks() {
         let row = a_row(&CASES[0]);
         assert_eq!((row.cycles_pess_max, row.worst_tick, row.ticks), (1000, 1, 3));
         assert_eq!((row.cycles_typ_mean, row.cycles_opt_p99, row.code_bytes), (900.0, 500, 5000));
-        // 84,000 cycles a tick, half of them, and 1050 a muscle.
+        // 84,000 cycles per tick, half of them used, 1050 per muscle with the margin.
         assert_eq!((row.muscles(84, 0.5), row.muscles(1, 1.0)), (40, 0));
     }
 }

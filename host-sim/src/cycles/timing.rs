@@ -1,25 +1,25 @@
-//! The timing models: cycles of each instruction in the order of execution.
+//! The timing models: cycles of each instruction in order of execution.
 //!
 //! Cortex-M4F: Arm, Cortex-M4 Technical Reference Manual r0p1, tables 3-1 (instruction set), 7-1
 //! (floating point) and section 3.3.2 (load and store timing). Cortex-M3: Arm, Cortex-M3 Technical
-//! Reference Manual r2p1 (DDI 0337I), table 3-1; all but long multiplication takes what it takes on
-//! an M4, and what the M4 was measured to wait for is assumed of the M3. The settings span what the
-//! manuals leave open: P, the cycles of a pipeline refill, is 1 to 3. The Cortex-M0+ is in
-//! [`m0_plus`]; nothing is open there.
+//! Reference Manual r2p1 (DDI 0337I), table 3-1. Only long multiplication differs from the M4; the
+//! pipeline stalls measured on an M4 are assumed for the M3. The settings span what the manuals
+//! leave open: P, the cycles of a pipeline refill, is 1 to 3. The Cortex-M0+ is in [`m0_plus`]; its
+//! manual leaves nothing open.
 
 mod m0_plus;
 
 use super::core::Core;
 use super::instruction::{Class, Instruction, Place, Registers};
 
-/// How what the manual leaves open is settled.
+/// Assumption where the manual leaves the timing open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
     /// Shortest refill, every overlap happens.
     Optimistic,
-    /// As published counts on hardware come out within a few percent.
+    /// Agrees with published counts on hardware within a few percent.
     Typical,
-    /// Longest refill, no overlap at all.
+    /// Longest refill, no overlap.
     Pessimistic,
 }
 
@@ -33,7 +33,7 @@ impl Setting {
         }
     }
 
-    /// SDIV and UDIV take 2 to 12 cycles, by their operands, which a trace does not show.
+    /// SDIV and UDIV: 2 to 12 cycles, depending on the operands, which a trace does not contain.
     fn divide(self) -> u64 {
         match self {
             Self::Optimistic => 2,
@@ -42,7 +42,7 @@ impl Setting {
         }
     }
 
-    /// UMULL and SMULL: 1 cycle on an M4; 3 to 5 on an M3, by their operands.
+    /// UMULL and SMULL: 1 cycle on an M4; 3 to 5 on an M3, depending on the operands.
     fn long_multiply(self, core: Core) -> u64 {
         match (core, self) {
             (Core::CortexM3, Self::Optimistic) => 3,
@@ -52,7 +52,7 @@ impl Setting {
         }
     }
 
-    /// UMLAL and SMLAL: 1 cycle on an M4; 4 to 7 on an M3, by their operands.
+    /// UMLAL and SMLAL: 1 cycle on an M4; 4 to 7 on an M3, depending on the operands.
     fn long_multiply_accumulate(self, core: Core) -> u64 {
         match (core, self) {
             (Core::CortexM3, Self::Optimistic) => 4,
@@ -66,31 +66,31 @@ impl Setting {
 /// Cycles of VDIV and VSQRT.
 const FLOAT_DIVIDE: u64 = 14;
 
-/// What the instructions before have left in the pipeline: all that the time of the next one
-/// depends on, and no more, so that a run of instructions met again in an equal state need not be
-/// timed again.
+/// State of the pipeline: exactly what the timing of the next instruction depends on. Equal states
+/// give equal timing, so that the cost of a block can be cached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pipeline {
-    /// Result of the last instruction, if that was one of `Class::Float`.
+    /// Registers written by the last instruction if it was of `Class::Float`.
     float_result: Registers,
-    /// Result of the last instruction, if that was integer work.
+    /// Registers written by the last instruction if it was integer arithmetic.
     integer_result: Registers,
-    /// What the last instruction loaded, if it was a single load or store that can be pipelined.
+    /// Registers loaded by the last instruction if it was a single load or store, which can be
+    /// pipelined.
     pipelined: Option<Registers>,
-    /// Where the last instruction stored, if it was a single store.
+    /// Memory operand of the last instruction if it was a single store.
     stored: Option<Place>,
-    /// The last instruction had 16 bits: an IT behind it is folded into it.
+    /// The last instruction had 16 bits: a following IT is folded into it.
     narrow: bool,
-    /// Cycles until the divider is free, and what it will have written then.
+    /// Cycles until the divider is free, and the registers it will write.
     divider_busy: u64,
     divider_result: Registers,
-    /// The last instruction was a branch that was taken.
+    /// The last instruction was a taken branch.
     jumped: bool,
 }
 
 impl Pipeline {
-    /// Executes an instruction on a core and returns its cycles; `taken`: it was not the following
-    /// one that was executed after it.
+    /// Executes an instruction on a core and returns its cycles; `taken`: execution did not
+    /// continue at the following address.
     pub fn execute(
         &mut self,
         core: Core,
@@ -106,7 +106,7 @@ impl Pipeline {
 
         let (mut busy, mut result) = (self.divider_busy, self.divider_result);
         if instruction.class == Class::FloatDivide {
-            // It starts when it is issued, not when the wait began.
+            // A division starts at issue, after the wait.
             (busy, result) = (wait + FLOAT_DIVIDE, instruction.writes);
         }
         let divider_busy = busy.saturating_sub(wait + duration);
@@ -133,7 +133,7 @@ impl Pipeline {
         wait + duration
     }
 
-    /// Cycles that an instruction waits for those before it.
+    /// Stall cycles of an instruction.
     fn wait(&self, setting: Setting, instruction: &Instruction) -> u64 {
         let uses = instruction.reads | instruction.addresses;
         let mut wait = 0;
@@ -144,11 +144,11 @@ impl Pipeline {
             if instruction.addresses & self.integer_result != 0 {
                 wait += 1;
             }
-            // A 32-bit instruction across two fetches has to be fetched twice.
+            // A 32-bit instruction that straddles two words needs two fetches.
             if self.jumped && instruction.size == 4 && instruction.address % 4 == 2 {
                 wait += 1;
             }
-            // A store has to leave the write buffer before its place can be read.
+            // A store must leave the write buffer before its address can be read.
             if instruction.class == Class::Load
                 && self.stored.is_some()
                 && self.stored == instruction.place
@@ -170,7 +170,7 @@ impl Pipeline {
         wait
     }
 
-    /// Cycles that an instruction takes by itself.
+    /// Cycles of an instruction without stalls.
     fn duration(
         &self,
         core: Core,
@@ -199,7 +199,7 @@ impl Pipeline {
                 u64::from(!folded)
             }
             Class::FloatMultiplyAccumulate => 3,
-            // The rest of a division runs beside what does not need it.
+            // The rest of a division overlaps with independent instructions.
             Class::FloatDivide if setting != Setting::Pessimistic => 1,
             Class::FloatDivide => FLOAT_DIVIDE,
         };

@@ -1,7 +1,7 @@
-//! The addresses of executed instructions, as QEMU runs an image.
+//! Streams the addresses of executed instructions from QEMU.
 //!
-//! A plugin sends them over a socket. A QEMU that was built without plugins still writes them to
-//! its log, as text and a hundred times slower.
+//! A plugin sends them over a socket. A QEMU built without plugin support writes them to its log as
+//! text, a hundred times slower.
 
 use super::core::Core;
 use crate::output_file::temporary_folder;
@@ -19,76 +19,76 @@ use std::time::{Duration, Instant};
 /// Why a program could not be traced.
 #[derive(Debug, thiserror::Error)]
 pub enum TraceError {
-    /// The target or QEMU is not to be had.
+    /// The target toolchain or QEMU is missing.
     #[error(transparent)]
     Target(#[from] TargetError),
     /// The plugin could not be built.
     #[error("the trace plugin does not build:\n{0}")]
     Plugin(String),
-    /// QEMU takes no plugin.
-    #[error("QEMU takes no plugin: {0}")]
+    /// QEMU did not load the plugin.
+    #[error("QEMU did not load the plugin: {0}")]
     Refused(String),
     /// The trace could not be read.
-    #[error("the trace broke off: {0}")]
+    #[error("reading the trace: {0}")]
     Read(#[from] std::io::Error),
-    /// The program went on for too long.
+    /// The program exceeded its timeout.
     #[error("{} is still running after {seconds} s (--timeout)", program.display())]
     Endless {
-        /// Which program.
+        /// The program.
         program: PathBuf,
-        /// How long it was let run, s.
+        /// Timeout, s.
         seconds: u64,
     },
     /// The program failed.
     #[error("{} ended with {status} after {blocks} blocks: {message}", program.display())]
     Failed {
-        /// Which program.
+        /// The program.
         program: PathBuf,
-        /// How it ended.
+        /// Exit status.
         status: std::process::ExitStatus,
-        /// How far it came.
+        /// Number of executed blocks.
         blocks: u64,
-        /// What QEMU said.
+        /// QEMU's standard error.
         message: String,
     },
 }
 
-/// How executed addresses are got from QEMU.
+/// Source of the trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Tracer {
-    /// By plugin, or by the log where plugins are refused.
+    /// The plugin; the log if QEMU does not load plugins.
     #[default]
     Auto,
-    /// By a plugin.
+    /// A plugin.
     Plugin,
-    /// By QEMU's execution log, a hundred times slower.
+    /// QEMU's execution log, a hundred times slower.
     Log,
 }
 
-/// What QEMU is to run.
+/// A program to run in QEMU.
 #[derive(Clone, Debug)]
 pub struct Program<'a> {
     /// The image.
     pub image: &'a Path,
-    /// QEMU's name of the machine.
+    /// QEMU machine name.
     pub machine: &'a str,
     /// The core whose timing is modelled.
     pub core: Core,
-    /// Further arguments.
+    /// Additional QEMU arguments.
     pub arguments: Vec<String>,
-    /// How long it may run.
+    /// Timeout.
     pub timeout: Duration,
 }
 
 impl<'a> Program<'a> {
-    /// An image made for the board that has a core.
+    /// An image built for the board of a core.
     pub fn on_board(image: &'a Path, core: Core) -> Self {
         let machine = core.board().machine;
         Self { image, machine, core, arguments: Vec::new(), timeout: PATIENCE }
     }
 }
 
-/// Instructions that were executed one after the other, with no branch among them but the last.
+/// Consecutively executed instructions; only the last may branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Block {
     /// Address of the first.
@@ -97,12 +97,12 @@ pub struct Block {
     pub last: u32,
 }
 
-/// How long a program of ours may run.
+/// Timeout of the bench.
 const PATIENCE: Duration = Duration::from_secs(1200);
-/// How long QEMU may take until it has loaded the plugin.
+/// Timeout until QEMU has loaded the plugin.
 const START: Duration = Duration::from_secs(60);
 
-/// Runs a program to its end and passes on every executed block.
+/// Runs a program to its end and calls `see` with every executed block.
 pub fn execute(
     program: &Program<'_>,
     tracer: Tracer,
@@ -113,12 +113,12 @@ pub fn execute(
         Tracer::Log => by_log(program, &mut see),
         Tracer::Auto => match by_plugin(program, &mut see) {
             Err(TraceError::Refused(_)) => by_log(program, &mut see),
-            done => done,
+            result => result,
         },
     }
 }
 
-/// Builds the plugin and returns its library.
+/// Builds the plugin and returns the path of its library.
 fn plugin() -> Result<PathBuf, TraceError> {
     let folder = target::root().join("target/trace-plugin");
     let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
@@ -135,7 +135,7 @@ fn plugin() -> Result<PathBuf, TraceError> {
     Ok(folder.join("release").join(name))
 }
 
-/// A run of QEMU, killed when it is let go of before its end, or when its time is up.
+/// A run of QEMU, killed when dropped or at its timeout.
 struct Run<'a> {
     program: &'a Program<'a>,
     child: Arc<Mutex<Child>>,
@@ -144,11 +144,10 @@ struct Run<'a> {
     blocks: u64,
 }
 
-/// Kills a child when its time is up: a program that sleeps executes nothing by which it could be
-/// noticed.
+/// Kills a child at its timeout. A separate thread is needed: a sleeping program sends no blocks.
 struct Watchdog {
     expired: Arc<AtomicBool>,
-    /// Dropped with the watchdog, which ends the thread that waits.
+    /// Dropping it ends the waiting thread.
     _alive: mpsc::Sender<()>,
 }
 
@@ -167,7 +166,7 @@ impl Watchdog {
     }
 }
 
-/// The child, whichever thread had it last.
+/// Locks the child, also if another thread panicked with the lock.
 fn locked(child: &Mutex<Child>) -> MutexGuard<'_, Child> {
     child.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -194,12 +193,12 @@ impl<'a> Run<'a> {
         Ok(Self { program, child, watchdog, started: Instant::now(), blocks: 0 })
     }
 
-    /// How it ended; none while it is running.
+    /// Exit status; `None` while running.
     fn status(&self) -> std::io::Result<Option<ExitStatus>> {
         locked(&self.child).try_wait()
     }
 
-    /// Waits for the end, which must be a success.
+    /// Waits for the end; fails unless the exit status is success.
     fn end(self, message: impl FnOnce() -> String) -> Result<(), TraceError> {
         let status = loop {
             match self.status()? {
@@ -218,13 +217,13 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Reads what QEMU says while it runs, lest its pipe fill up.
+/// Drains QEMU's standard error while it runs, so that its pipe does not fill up.
 fn listen(child: &Mutex<Child>) -> JoinHandle<String> {
     let pipe = locked(child).stderr.take();
     thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut pipe) = pipe {
-            // What was read before an error is still worth showing.
+            // Output read before an error is still worth showing.
             let _broken = pipe.read_to_end(&mut bytes);
         }
         String::from_utf8_lossy(&bytes).trim().to_owned()
@@ -241,7 +240,7 @@ fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), T
     let mut run = Run::start(program, &["-plugin", &argument])?;
     let said = listen(&run.child);
     let Some(mut stream) = accept(&listener, &run)? else {
-        // It may be running without us.
+        // QEMU may be running without the plugin.
         let _already_gone = locked(&run.child).kill();
         return Err(TraceError::Refused(said.join().unwrap_or_default()));
     };
@@ -267,7 +266,7 @@ fn by_plugin(program: &Program<'_>, see: &mut impl FnMut(Block)) -> Result<(), T
     run.end(|| said.join().unwrap_or_default())
 }
 
-/// The plugin's connection; `None` if QEMU ends without one.
+/// Accepts the plugin's connection; `None` if QEMU ends without one.
 fn accept(listener: &UnixListener, run: &Run<'_>) -> Result<Option<UnixStream>, TraceError> {
     loop {
         match listener.accept() {
@@ -278,7 +277,7 @@ fn accept(listener: &UnixListener, run: &Run<'_>) -> Result<Option<UnixStream>, 
             Err(error) if error.kind() != std::io::ErrorKind::WouldBlock => {
                 return Err(error.into());
             }
-            // A run so short that it is over is connected all the same.
+            // The plugin of a very short run may have connected before QEMU ended.
             Err(_) if run.status()?.is_some() => match listener.accept() {
                 Ok((stream, _)) => return Ok(Some(stream)),
                 Err(_) => return Ok(None),
@@ -289,7 +288,7 @@ fn accept(listener: &UnixListener, run: &Run<'_>) -> Result<Option<UnixStream>, 
     }
 }
 
-/// What makes QEMU log every instruction by itself.
+/// QEMU arguments that log every instruction separately.
 fn log_arguments() -> Result<&'static [&'static str], TraceError> {
     let output = Command::new(target::QEMU)
         .arg("--version")
@@ -299,7 +298,7 @@ fn log_arguments() -> Result<&'static [&'static str], TraceError> {
     let version = text.split("version ").nth(1).unwrap_or("");
     let mut numbers = version.split('.').map(|number| number.parse::<u32>().unwrap_or(0));
     let version = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
-    // The old name was given up for the new one.
+    // QEMU 8.1 replaced -singlestep.
     Ok(if version >= (8, 1) {
         &["-accel", "tcg,one-insn-per-tb=on", "-d", "exec,nochain"]
     } else {
@@ -337,7 +336,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_are_read_from_the_log() {
+    fn addresses_are_parsed_from_the_log() {
         let line = "Trace 0: 0x7ff1fc000100 [00000000/08000194/00000110/ff000200] reset";
         assert_eq!(logged_address(line), Some(0x0800_0194));
         assert_eq!(logged_address("qemu-system-arm: no such file"), None);

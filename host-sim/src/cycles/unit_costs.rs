@@ -1,5 +1,5 @@
-//! What a tick in `f32` costs by the number of motor units: counted with the table, and kept for
-//! figure 7 of the paper.
+//! Cost of a tick in `f32` by number of motor units, for figure 7 of the paper. Measured with the
+//! table.
 
 use super::case::{Case, Subject};
 use super::core::Core;
@@ -9,24 +9,24 @@ use crate::reference::Mode;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// What `vm cycles --write` has counted.
+/// Written by `vm cycles --write`.
 const COUNTED: &str = include_str!("../../data/computation.csv");
 
-/// What a tick costs on average.
+/// Cost of a tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnitCost {
     /// Recruitment mode.
     pub mode: String,
     /// Motor units of each of two types; 1 under continuous recruitment.
     pub units_per_type: usize,
-    /// Mean cycles of a Cortex-M4F, typical setting of the timing model.
+    /// Mean cycles on a Cortex-M4F, typical setting of the timing model.
     pub cycles: u64,
-    /// Instructions of the longest tick.
+    /// Most instructions in a tick.
     pub instructions: u64,
 }
 
 impl UnitCost {
-    /// Those of the rows of the table that are of `f32`.
+    /// Selects the rows in `f32` on the Cortex-M4F.
     pub fn of(rows: &[Row]) -> Vec<Self> {
         let cost = |row: &Row| {
             if row.target != Core::CortexM4F {
@@ -50,17 +50,17 @@ impl UnitCost {
         costs
     }
 
-    /// Those that were counted last.
+    /// Reads the stored costs.
     pub fn counted() -> Result<Vec<Self>, csv::Error> {
         csv::Reader::from_reader(COUNTED.as_bytes()).deserialize().collect()
     }
 
-    /// Where they are kept.
+    /// Path of the stored costs.
     pub fn path() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("data/computation.csv")
     }
 
-    /// Costs as that file has them.
+    /// Encodes costs in the format of that file.
     pub fn file(costs: &[Self]) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         costs.iter().try_for_each(|cost| writer.serialize(cost))?;

@@ -81,7 +81,7 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
             "| {} | {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
             row.target.name(),
             row.case,
-            row.class,
+            row.class.name(),
             row.cycles_typ_mean,
             row.cycles_typ_max,
             row.cycles_pess_max,

@@ -1,14 +1,14 @@
-//! The Cortex-M0+ with the multiplier of a single cycle: Arm, Cortex-M0+ Technical Reference Manual
-//! r0p1 (DDI 0484C), table 3.1, zero wait states, no single-cycle I/O port. Every instruction takes
-//! what the table says, whatever is before it.
+//! The Cortex-M0+ with the single-cycle multiplier: Arm, Cortex-M0+ Technical Reference Manual
+//! r0p1 (DDI 0484C), table 3.1, zero wait states, no single-cycle I/O port. The timing
+//! of an instruction does not depend on those before it.
 
 use crate::cycles::instruction::{Class, Instruction};
 
-/// Cycles of an instruction; `taken`: it was not the following one that was executed after it.
+/// Cycles of an instruction; `taken`: execution did not continue at the following address.
 pub(super) fn cycles(instruction: &Instruction, taken: bool) -> u64 {
     match instruction.class {
         Class::Load | Class::Store | Class::StoreByRegister => 2,
-        // The return takes two cycles more; the program counter is one of the words.
+        // A return takes two more cycles; the program counter counts as one of the words.
         Class::LoadMany(words) if instruction.writes_program_counter() => 3 + u64::from(words),
         Class::LoadMany(words) | Class::StoreMany(words) => 1 + u64::from(words),
         Class::Call => 3,
@@ -27,7 +27,7 @@ mod tests {
     use super::super::{Core, Setting};
 
     #[test]
-    fn instructions_take_what_the_manual_says_whatever_the_setting() {
+    fn instructions_take_the_manuals_cycles_in_every_setting() {
         let cases: &[(&[u16], u64)] = &[
             (&[0x4348], 1),         // muls r0, r1, r0
             (&[0x3801], 1),         // subs r0, #1

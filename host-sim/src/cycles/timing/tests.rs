@@ -1,9 +1,9 @@
-//! Each rule on a short sequence.
+//! Tests each timing rule on a short sequence.
 
 use super::super::instruction::Decoder;
 use super::*;
 
-/// Cycles of a straight sequence, and of a loop's pass where it ends with a branch back.
+/// Cycles of a sequence executed `passes` times; for more than one it must end with a branch back.
 fn cycles(setting: Setting, halfwords: &[u16], passes: u64) -> u64 {
     cycles_on(Core::CortexM4F, setting, halfwords, passes)
 }
@@ -30,7 +30,7 @@ pub(super) fn cycles_on(core: Core, setting: Setting, halfwords: &[u16], passes:
     cycles
 }
 
-/// Cycles of one more pass of a loop.
+/// Cycles per pass of a loop, in steady state.
 fn per_pass(setting: Setting, halfwords: &[u16]) -> u64 {
     cycles(setting, halfwords, 101) - cycles(setting, halfwords, 100)
 }
@@ -46,20 +46,20 @@ const ADDS_ADDRESS: u16 = 0x3104; // adds r1, #4
 const VDIV: [u16; 2] = [0xEE81, 0x0A01]; // vdiv.f32 s0, s2, s2
 const VADD: [u16; 2] = [0xEE31, 0x1A22]; // vadd.f32 s2, s2, s5
 
-/// Cycles of an instruction that is not followed by the next one.
+/// Cycles of a taken branch.
 fn taken(setting: Setting, halfwords: &[u16]) -> u64 {
     let code: Vec<u8> = halfwords.iter().flat_map(|h| h.to_le_bytes()).collect();
     let one = Decoder::new().expect("a decoder").decode(&code, 0x1000).expect("one");
     Pipeline::default().execute(Core::CortexM4F, setting, &one, true)
 }
 
-/// `bne` back over some halfwords.
+/// Encodes a `bne` back over a number of halfwords.
 fn bne_back(halfwords: u16) -> u16 {
     0xD100 | (0xFF & (0_u16.wrapping_sub(halfwords + 2)))
 }
 
 #[test]
-fn loops_of_multiplications_take_what_was_measured_on_hardware() {
+fn loops_of_multiplications_agree_with_published_hardware_counts() {
     // Published: ten dependent VMUL in a loop, 22.3, 22.1 and 22.2 cycles a pass on STM32F405,
     // F411 and G431; one VMUL in a loop, 4.00, 4.00 and 4.01.
     let mut ten: Vec<u16> = VMUL_CHAINED.repeat(10);
@@ -73,7 +73,7 @@ fn loops_of_multiplications_take_what_was_measured_on_hardware() {
 }
 
 #[test]
-fn a_float_result_is_waited_for_by_the_next_instruction_only() {
+fn a_float_result_stalls_only_the_next_instruction() {
     let apart = [VMUL_CHAINED, VMUL_APART, VMUL_CHAINED].concat();
     assert_eq!(cycles(Setting::Typical, &apart, 1), 3);
     let chained = VMUL_CHAINED.repeat(3);
@@ -81,33 +81,33 @@ fn a_float_result_is_waited_for_by_the_next_instruction_only() {
 }
 
 #[test]
-fn loads_and_stores_in_a_row_are_pipelined_unless_an_address_was_just_loaded() {
+fn consecutive_accesses_are_pipelined_unless_the_address_was_just_loaded() {
     assert_eq!(cycles(Setting::Typical, &[LDR], 1), 2);
     assert_eq!(cycles(Setting::Typical, &[LDR, LDR_NEXT], 1), 3);
     assert_eq!(cycles(Setting::Typical, &[LDR_NEXT, STR], 1), 3);
     assert_eq!(cycles(Setting::Typical, &[LDR, LDR_THROUGH], 1), 4);
     assert_eq!(cycles(Setting::Pessimistic, &[LDR, LDR_NEXT], 1), 4);
-    // An address from the instruction before comes a cycle late.
+    // One stall cycle if the previous instruction computed the address.
     assert_eq!(cycles(Setting::Typical, &[ADDS_ADDRESS, LDR], 1), 4);
     assert_eq!(cycles(Setting::Optimistic, &[ADDS_ADDRESS, LDR], 1), 3);
 }
 
 #[test]
-fn a_division_runs_beside_what_does_not_need_it() {
+fn a_division_overlaps_with_independent_instructions() {
     assert_eq!(cycles(Setting::Pessimistic, &VDIV, 1), 14);
-    let beside = [VDIV[0], VDIV[1], SUBS, SUBS, LDR, VADD[0], VADD[1]];
-    assert_eq!(cycles(Setting::Typical, &beside, 1), 15);
-    assert_eq!(cycles(Setting::Pessimistic, &beside, 1), 14 + 2 + 2 + 1);
+    let overlapping = [VDIV[0], VDIV[1], SUBS, SUBS, LDR, VADD[0], VADD[1]];
+    assert_eq!(cycles(Setting::Typical, &overlapping, 1), 15);
+    assert_eq!(cycles(Setting::Pessimistic, &overlapping, 1), 14 + 2 + 2 + 1);
 }
 
 #[test]
-fn many_words_take_one_cycle_more_than_there_are() {
+fn multiple_loads_and_stores_take_one_cycle_more_than_words() {
     assert_eq!(cycles(Setting::Typical, &[0xB5F0], 1), 6); // push {r4-r7, lr}
     assert_eq!(cycles(Setting::Typical, &[0xED2D, 0x8B04], 1), 5); // vpush {d8, d9}
 }
 
 #[test]
-fn a_taken_branch_refills_the_pipeline_and_one_not_taken_does_not() {
+fn only_a_taken_branch_refills_the_pipeline() {
     let back = [SUBS, bne_back(1)];
     assert_eq!(per_pass(Setting::Optimistic, &back), 3);
     assert_eq!(per_pass(Setting::Typical, &back), 4);
@@ -116,7 +116,7 @@ fn a_taken_branch_refills_the_pipeline_and_one_not_taken_does_not() {
 }
 
 #[test]
-fn if_then_is_folded_into_a_narrow_instruction_before_it() {
+fn if_then_is_folded_into_a_preceding_narrow_instruction() {
     let folded = [SUBS, 0xBF08, 0x2001]; // subs; it eq; moveq r0, #1
     assert_eq!(cycles(Setting::Optimistic, &folded, 1), 2);
     assert_eq!(cycles(Setting::Typical, &folded, 1), 2);
@@ -126,14 +126,14 @@ fn if_then_is_folded_into_a_narrow_instruction_before_it() {
 }
 
 #[test]
-fn integer_divisions_take_the_worst_where_operands_are_not_known() {
+fn settings_span_the_cycles_of_integer_division() {
     let udiv = [0xFBB0, 0xF0F1];
     assert_eq!(cycles(Setting::Optimistic, &udiv, 1), 2);
     assert_eq!(cycles(Setting::Pessimistic, &udiv, 1), 12);
 }
 
 #[test]
-fn long_multiplications_take_an_m3_as_long_as_its_manual_says() {
+fn long_multiplications_on_an_m3_take_the_manuals_cycles() {
     let (umull, smlal) = ([0xFBA2, 0x0103], [0xFBC2, 0x0103]);
     let on = |core, setting, code: &[u16]| cycles_on(core, setting, code, 1);
     use Setting::{Optimistic, Pessimistic, Typical};
@@ -152,7 +152,7 @@ fn long_multiplications_take_an_m3_as_long_as_its_manual_says() {
 }
 
 #[test]
-fn multiplications_with_accumulation_take_their_time() {
+fn multiply_accumulates_take_the_manuals_cycles() {
     assert_eq!(cycles(Setting::Typical, &[0xFB00, 0x2001], 1), 2); // mla
     assert_eq!(cycles(Setting::Typical, &[0xFBC2, 0x0103], 1), 1); // smlal
     assert_eq!(cycles(Setting::Typical, &[0xEEA0, 0x0A81], 1), 3); // vfma.f32
@@ -160,17 +160,17 @@ fn multiplications_with_accumulation_take_their_time() {
 }
 
 #[test]
-fn moves_and_comparisons_of_floats_keep_nobody_waiting() {
+fn float_moves_and_comparisons_do_not_stall_the_next_instruction() {
     let absolute = [0xEEB0, 0x0AC0]; // vabs.f32 s0, s0
     assert_eq!(cycles(Setting::Typical, &[absolute, absolute].concat(), 1), 2);
     let two = [0xEC41, 0x0B10]; // vmov d0, r0, r1
     assert_eq!(cycles(Setting::Typical, &two, 1), 2);
-    // But for what they read from a result that is not there yet.
+    // But they stall on the result of the instruction before.
     assert_eq!(cycles(Setting::Typical, &[VMUL_CHAINED, absolute].concat(), 1), 3);
 }
 
 #[test]
-fn stores_by_register_and_pairs_take_longer_than_a_store() {
+fn register_offset_and_pair_accesses_take_longer_than_a_store() {
     assert_eq!(cycles(Setting::Typical, &[STR], 1), 1);
     assert_eq!(cycles(Setting::Typical, &[0x5088], 1), 2); // str r0, [r1, r2]
     assert_eq!(cycles(Setting::Typical, &[0xE9D1, 0x0200], 1), 3); // ldrd r0, r2, [r1]
@@ -180,7 +180,7 @@ fn stores_by_register_and_pairs_take_longer_than_a_store() {
 }
 
 #[test]
-fn loads_of_floats_are_pipelined_like_others() {
+fn float_loads_are_pipelined() {
     let load = [0xED91, 0x0A00]; // vldr s0, [r1]
     let next = [0xEDD1, 0x0A01]; // vldr s1, [r1, #4]
     assert_eq!(cycles(Setting::Typical, &load, 1), 2);
@@ -189,7 +189,7 @@ fn loads_of_floats_are_pipelined_like_others() {
 }
 
 #[test]
-fn a_place_that_was_just_stored_to_is_read_a_cycle_later() {
+fn a_load_from_the_address_just_stored_stalls() {
     let again = 0x680A; // ldr r2, [r1]
     assert_eq!(cycles(Setting::Typical, &[STR, again], 1), 1 + 1 + 1);
     assert_eq!(cycles(Setting::Optimistic, &[STR, again], 1), 1 + 1);
@@ -209,7 +209,7 @@ fn calls_and_returns_refill_the_pipeline() {
 }
 
 #[test]
-fn a_wide_instruction_across_two_fetches_is_waited_for_after_a_jump() {
+fn an_unaligned_wide_instruction_after_a_taken_branch_stalls() {
     let wide_first = [VMUL_CHAINED[0], VMUL_CHAINED[1], SUBS, bne_back(3)];
     let aligned = per_pass(Setting::Typical, &wide_first);
     // The same loop two bytes further on.
