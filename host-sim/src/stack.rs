@@ -1,8 +1,8 @@
 //! Worst-case stack of a program for a Cortex-M, computed from its image.
 //!
-//! Every function is walked instruction by instruction with the stack depth at each; calls are
-//! followed from the depth at which they are made. An indirect call, a frame of unknown size or
-//! recursion makes the result unknown and is named. Interrupts nest: each priority adds its deepest
+//! Every function is walked instruction by instruction, tracking the stack depth; callees add to
+//! the depth at their call. An indirect call, a frame of unknown size or recursion is reported as a
+//! problem, because the depth is then unknown. Interrupts nest: each priority adds its deepest
 //! handler and the exception frame.
 
 mod calls;

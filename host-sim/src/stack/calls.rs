@@ -1,24 +1,24 @@
-//! The deepest call path of a function.
+//! Deepest call path of a function.
 
 use super::description::Indirect;
 use super::function::{Call, Functions};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A function on a path of calls.
+/// A function on a call path.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Step {
     /// Name.
     pub function: String,
-    /// Stack it holds at the call of the next function; in the last function, its greatest depth.
+    /// Its stack depth at the call of the next function; for the last function its greatest depth.
     pub bytes: u32,
 }
 
-/// Deepest path of a function.
+/// A deepest call path.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Deepest {
-    /// Its depth, bytes.
+    /// Depth, bytes.
     pub bytes: u32,
-    /// Its functions, from the entry.
+    /// Functions, from the entry.
     pub path: Vec<Step>,
 }
 
@@ -30,12 +30,12 @@ pub(super) struct Calls<'f, 'a> {
     /// From the entry to the current function.
     path: Vec<u32>,
     /// A function whose calls are ignored.
-    left_out: Option<u32>,
-    /// A function that may start a new stack, because it never returns.
-    pub may_begin: Option<u32>,
+    ignored: Option<u32>,
+    /// The function that may reset the stack pointer, because it never returns.
+    pub may_reset: Option<u32>,
     /// Reasons why the depth is unknown.
     pub unknown: BTreeSet<String>,
-    /// Indirect calls that were found, by index in the description.
+    /// Indices of the described indirect calls that were found.
     pub used: BTreeSet<usize>,
 }
 
@@ -43,35 +43,35 @@ impl<'f, 'a> Calls<'f, 'a> {
     pub fn new(functions: &'f mut Functions<'a>, indirect: &'f [Indirect]) -> Self {
         let (unknown, used) = Default::default();
         let (known, path) = Default::default();
-        let (left_out, may_begin) = (None, None);
-        Self { functions, indirect, known, path, left_out, may_begin, unknown, used }
+        let (ignored, may_reset) = (None, None);
+        Self { functions, indirect, known, path, ignored, may_reset, unknown, used }
     }
 
     /// Deepest path of a function, ignoring calls of another.
-    pub fn deepest_without(&mut self, entry: u32, left_out: u32) -> Deepest {
+    pub fn deepest_without(&mut self, entry: u32, ignored: u32) -> Deepest {
         self.known.clear();
-        self.left_out = Some(left_out);
+        self.ignored = Some(ignored);
         let deepest = self.deepest(entry);
-        self.left_out = None;
+        self.ignored = None;
         self.known.clear();
         deepest
     }
 
-    /// Deepest path of the second function, called by the first.
-    pub fn deepest_through(&mut self, entry: u32, first: u32) -> Option<Deepest> {
+    /// Deepest path from `entry` that leads through a call of `via`.
+    pub fn deepest_through(&mut self, entry: u32, via: u32) -> Option<Deepest> {
         self.functions.walk(entry);
         let walked = self.functions.known(entry)?.clone();
         let calls = walked.calls.iter().filter_map(|call| Some((call.target?, call.depth)));
         let calls: Vec<(u32, u32)> = calls.collect();
         let mut found: Option<Deepest> = None;
         for (target, depth) in calls {
-            let behind = if target == first {
+            let below = if target == via {
                 Some(self.deepest(target))
             } else {
-                self.deepest_through(target, first)
+                self.deepest_through(target, via)
             };
-            let Some(behind) = behind else { continue };
-            let here = self.on_top(entry, depth, behind);
+            let Some(below) = below else { continue };
+            let here = self.prepend(entry, depth, below);
             if found.as_ref().is_none_or(|found| found.bytes < here.bytes) {
                 found = Some(here);
             }
@@ -87,7 +87,7 @@ impl<'f, 'a> Calls<'f, 'a> {
         if let Some(from) = self.path.iter().position(|&before| before == entry) {
             let names: Vec<String> =
                 self.path[from..].iter().map(|&address| self.functions.name(address)).collect();
-            self.unknown.insert(format!("recursion: {}, and again", names.join(", ")));
+            self.unknown.insert(format!("recursion: {}, then again", names.join(", ")));
             return Deepest::default();
         }
         self.functions.walk(entry);
@@ -96,21 +96,21 @@ impl<'f, 'a> Calls<'f, 'a> {
         for (at, what) in &walked.unknown {
             self.unknown.insert(format!("{name}, {at:#010x}: {what}"));
         }
-        if let Some(at) = walked.begins.filter(|_| self.may_begin != Some(entry) || walked.returns)
+        if let Some(at) = walked.resets.filter(|_| self.may_reset != Some(entry) || walked.returns)
         {
-            self.unknown.insert(format!("{name}, {at:#010x}: starts another stack"));
+            self.unknown.insert(format!("{name}, {at:#010x}: writes the stack pointer"));
         }
         self.path.push(entry);
         let step = Step { function: name.clone(), bytes: walked.own };
         let mut deepest = Deepest { bytes: walked.own, path: vec![step] };
         for call in &walked.calls {
             for target in self.targets(&name, call) {
-                if self.left_out == Some(target) {
+                if self.ignored == Some(target) {
                     continue;
                 }
-                let behind = self.deepest(target);
-                if call.depth + behind.bytes > deepest.bytes {
-                    deepest = self.on_top(entry, call.depth, behind);
+                let below = self.deepest(target);
+                if call.depth + below.bytes > deepest.bytes {
+                    deepest = self.prepend(entry, call.depth, below);
                 }
             }
         }
@@ -119,10 +119,10 @@ impl<'f, 'a> Calls<'f, 'a> {
         deepest
     }
 
-    fn on_top(&self, entry: u32, depth: u32, behind: Deepest) -> Deepest {
+    fn prepend(&self, entry: u32, depth: u32, below: Deepest) -> Deepest {
         let mut path = vec![Step { function: self.functions.name(entry), bytes: depth }];
-        path.extend(behind.path);
-        Deepest { bytes: depth + behind.bytes, path }
+        path.extend(below.path);
+        Deepest { bytes: depth + below.bytes, path }
     }
 
     /// Possible targets of a call.
@@ -168,13 +168,13 @@ mod tests {
         deepest.path.iter().map(|step| (step.function.as_str(), step.bytes)).collect()
     }
 
-    /// push {r7, lr}; bl over so many halfwords; pop {r7, pc}
-    const fn calls_behind(halfwords: u16) -> [u16; 4] {
+    /// push {r7, lr}; bl to a function this many halfwords after the end; pop {r7, pc}
+    const fn calls_ahead(halfwords: u16) -> [u16; 4] {
         [0xB580, 0xF000, 0xF800 + halfwords, 0xBD80]
     }
 
     #[test]
-    fn the_deeper_of_two_callees_counts_from_where_it_is_called() {
+    fn the_deeper_callee_adds_to_the_depth_at_its_call() {
         // push {r7, lr}; bl g; sub sp, #32; bl h; add sp, #32; pop {r7, pc}
         let f: &[u16] = &[0xB580, 0xF000, 0xF805, 0xB088, 0xF000, 0xF804, 0xB008, 0xBD80];
         // push {r4-r7, lr}; pop {r4-r7, pc}
@@ -185,15 +185,15 @@ mod tests {
     }
 
     #[test]
-    fn recursion_is_unknown_and_names_the_circle() {
+    fn recursion_is_reported_with_its_cycle() {
         // f calls g, which calls f.
         let g: &[u16] = &[0xB580, 0xF7FF, 0xFFF9, 0xBD80];
-        let (_, unknown) = deepest(&[("f", &calls_behind(1)), ("g", g)], &[]);
-        assert_eq!(unknown, ["recursion: f, g, and again"]);
+        let (_, unknown) = deepest(&[("f", &calls_ahead(1)), ("g", g)], &[]);
+        assert_eq!(unknown, ["recursion: f, g, then again"]);
     }
 
     #[test]
-    fn only_what_never_comes_back_may_begin_another_stack() {
+    fn only_a_function_that_never_returns_may_reset_the_stack_pointer() {
         // msr msp, r0; b .
         let ends: [(&str, &[u16]); 1] = [("f", &[0xF380, 0x8808, 0xE7FE])];
         let returns: [(&str, &[u16]); 1] = [("f", &[0xF380, 0x8808, 0x4770])];
@@ -201,14 +201,14 @@ mod tests {
             let image = Image::of_code(HERE, &functions);
             let mut functions = Functions::new(&image).expect("a decoder");
             let mut calls = Calls::new(&mut functions, &[]);
-            calls.may_begin = may.then_some(HERE);
+            calls.may_reset = may.then_some(HERE);
             calls.deepest(HERE);
             assert_eq!(calls.unknown.len(), unknown, "{:?}", calls.unknown);
         }
     }
 
     #[test]
-    fn an_indirect_call_is_unknown_unless_the_description_says_where_it_leads() {
+    fn an_indirect_call_is_reported_unless_the_description_lists_its_targets() {
         // push {r7, lr}; blx r0; pop {r7, pc}
         let functions: [(&str, &[u16]); 2] =
             [("f", &[0xB580, 0x4780, 0xBD80]), ("g", &[0xB5F0, 0xBDF0])];
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_a_path_can_be_looked_at_and_left_out() {
+    fn paths_with_and_without_a_function_are_found() {
         let image = Image::of_code(
             HERE,
             &[

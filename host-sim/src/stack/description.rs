@@ -9,7 +9,7 @@ use serde::Deserialize;
 pub struct Description {
     /// The chip's memory.
     pub ram: Ram,
-    /// Thread mode: what runs without an interrupt.
+    /// Thread mode: code outside interrupts.
     pub thread: Thread,
     /// Function of all vectors that are not described.
     pub default_handler: String,
@@ -35,13 +35,13 @@ pub struct Ram {
     pub guard_bytes: u32,
 }
 
-/// Thread mode: what runs without an interrupt.
+/// Thread mode: code outside interrupts.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thread {
     /// Function of vector 1.
     pub entry: String,
-    /// Part that returns before the rest runs.
+    /// Function called at boot that returns before the idle loop.
     pub boot: String,
 }
 
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stimulators_description_is_one() {
+    fn the_stimulators_description_parses() {
         let text = include_str!("../../../firmware/stack.toml");
         let description: Description = toml::from_str(text).expect("a description");
         assert!(description.indirect.iter().all(|indirect| !indirect.reason.is_empty()));

@@ -9,14 +9,14 @@ pub(super) enum OnStack {
     Moves(i32),
     /// Changes it by an unknown amount.
     Dynamic,
-    /// Starts another stack.
-    Begins,
+    /// Writes it with an unrelated value (MSR).
+    Reset,
 }
 
 /// Control flow of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Goes {
-    /// To the next one.
+    /// To the next instruction.
     On,
     /// To an address.
     To(u32),
@@ -49,7 +49,7 @@ pub(super) fn on_stack(instruction: &Instruction) -> OnStack {
             let constant = operands.starts_with("sp, #") || operands.starts_with("sp, sp, #");
             if constant { OnStack::Moves(instruction.stack_change) } else { OnStack::Dynamic }
         }
-        "msr" if operands.to_lowercase().contains("sp,") => OnStack::Begins,
+        "msr" if operands.to_lowercase().contains("sp,") => OnStack::Reset,
         _ if instruction.stack_change != 0 => OnStack::Moves(instruction.stack_change),
         _ if writes => OnStack::Dynamic,
         _ => OnStack::Moves(0),
@@ -63,7 +63,7 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     match (instruction.mnemonic(), instruction.class) {
         ("tbb", _) => Goes::Table(1),
         ("tbh", _) => Goes::Table(2),
-        // The disassembler's name of UDF #254, which stands where the compiler says nothing comes.
+        // The disassembler's name of UDF #254, which the compiler emits for unreachable code.
         ("udf" | "udf.w" | "trap", _) => Goes::Nowhere,
         ("b" | "b.w", _) => by(Goes::To),
         (_, Class::Branch) => by(Goes::ToOrOn),
@@ -72,7 +72,7 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
         ("bx", _) => Goes::IndirectJump,
         (name, _) if name.starts_with("blx") => Goes::IndirectCall,
         ("mov", _) if text == "mov pc, lr" => Goes::Return,
-        // Only the pushed link register.
+        // The popped word is the pushed link register.
         (name, Class::LoadMany(_)) if instruction.writes_program_counter() => {
             let from_stack = name.starts_with("pop") || text.contains(" sp!");
             if from_stack { Goes::Return } else { Goes::IndirectJump }
@@ -83,12 +83,12 @@ pub(super) fn goes(instruction: &Instruction) -> Goes {
     }
 }
 
-/// Instructions of an IT block that execute if the condition holds; the others execute if it does
-/// not.
-pub(super) fn conditional_behind(instruction: &Instruction) -> Option<Vec<bool>> {
+/// For each instruction of an IT block whether it executes if the condition holds; the others
+/// execute if it does not.
+pub(super) fn it_conditions(instruction: &Instruction) -> Option<Vec<bool>> {
     let then_else = instruction.mnemonic().strip_prefix('i')?;
-    let is_one = instruction.class == Class::IfThen;
-    is_one.then(|| then_else.chars().map(|letter| letter == 't').collect())
+    let is_it = instruction.class == Class::IfThen;
+    is_it.then(|| then_else.chars().map(|letter| letter == 't').collect())
 }
 
 /// Whether it may change the condition flags.

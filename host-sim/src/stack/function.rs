@@ -1,6 +1,6 @@
-//! Stack of one function: its own depth, and the depth at each call.
+//! Stack of one function: its greatest depth and the depth at each call.
 
-use super::effect::{Goes, OnStack, conditional_behind, goes, on_stack, sets_flags};
+use super::effect::{Goes, OnStack, goes, it_conditions, on_stack, sets_flags};
 use crate::cycles::{Core, Decoded, Image};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,14 +18,14 @@ pub(super) struct Call {
 /// Result of walking a function.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Walked {
-    /// Its own greatest depth, bytes.
+    /// Greatest depth without callees, bytes.
     pub own: u32,
-    /// Its calls.
+    /// Calls.
     pub calls: BTreeSet<Call>,
     /// Whether it returns.
     pub returns: bool,
-    /// Address at which it starts another stack.
-    pub begins: Option<u32>,
+    /// Address at which it writes the stack pointer (MSR).
+    pub resets: Option<u32>,
     /// Unknowns, by address.
     pub unknown: BTreeMap<u32, String>,
 }
@@ -34,11 +34,11 @@ pub(super) struct Walked {
 pub(super) struct Functions<'a> {
     pub image: &'a Image,
     decoded: Decoded<'a>,
-    /// None while a function is being walked, which detects recursion.
+    /// `None` while a function is being walked, to detect recursion.
     walked: BTreeMap<u32, Option<Walked>>,
 }
 
-/// Most different depths of an instruction; more means that the stack grows in a loop.
+/// Limit of different depths at one instruction; more means that the stack grows in a loop.
 const MOST_DEPTHS: usize = 8;
 
 const NOP: [u8; 2] = [0x00, 0xBF];
@@ -57,7 +57,7 @@ impl<'a> Functions<'a> {
         }
     }
 
-    /// A walked function.
+    /// The result for a walked function.
     pub fn known(&self, address: u32) -> Option<&Walked> {
         self.walked.get(&address)?.as_ref()
     }
@@ -83,7 +83,7 @@ impl<'a> Functions<'a> {
     fn walk_one(&mut self, entry: u32) -> Walked {
         let mut walked = Walked::default();
         let Some(home) = self.image.function_at(entry) else {
-            walked.unknown.insert(entry, "no function is known there".to_owned());
+            walked.unknown.insert(entry, "no function at this address".to_owned());
             return walked;
         };
         let inside = home.address..home.address + home.size;
@@ -104,7 +104,7 @@ impl<'a> Functions<'a> {
             let instruction = match self.decoded.at(at) {
                 Ok(instruction) if inside.contains(&at) => instruction.clone(),
                 _ => {
-                    walked.unknown.insert(at, "runs off its end".to_owned());
+                    walked.unknown.insert(at, "runs past the end of the function".to_owned());
                     continue;
                 }
             };
@@ -114,7 +114,7 @@ impl<'a> Functions<'a> {
             };
             let next = at + instruction.size;
             let inverted = |block: &[bool]| block.iter().map(|executes| !executes).collect();
-            if let Some(block) = conditional_behind(&instruction) {
+            if let Some(block) = it_conditions(&instruction) {
                 ahead.push((next, depth, inverted(&block)));
                 ahead.push((next, depth, block));
                 continue;
@@ -130,8 +130,8 @@ impl<'a> Functions<'a> {
                     unknown("frame of unknown size");
                     i64::from(depth)
                 }
-                OnStack::Begins => {
-                    walked.begins = Some(at);
+                OnStack::Reset => {
+                    walked.resets = Some(at);
                     i64::from(depth)
                 }
             };
@@ -141,24 +141,24 @@ impl<'a> Functions<'a> {
             };
             walked.own = walked.own.max(after);
             let call = |target| Call { at, depth: after, target };
-            let mut goes_on = None;
+            let mut falls_through = None;
             let mut jumps = Vec::new();
             match goes(&instruction) {
-                Goes::On => goes_on = Some(after),
+                Goes::On => falls_through = Some(after),
                 Goes::To(target) => jumps.push(target),
                 Goes::ToOrOn(target) => {
                     jumps.push(target);
-                    goes_on = Some(after);
+                    falls_through = Some(after);
                 }
                 Goes::Call(target) => {
                     walked.calls.insert(call(Some(target)));
                     if self.returns(target) {
-                        goes_on = Some(after);
+                        falls_through = Some(after);
                     }
                 }
                 Goes::IndirectCall => {
                     walked.calls.insert(call(None));
-                    goes_on = Some(after);
+                    falls_through = Some(after);
                 }
                 Goes::IndirectJump => {
                     walked.calls.insert(call(None));
@@ -166,7 +166,7 @@ impl<'a> Functions<'a> {
                 }
                 Goes::Table(bytes) => match self.table(next, bytes) {
                     Some(targets) => jumps.extend(targets),
-                    None => unknown("a table that cannot be read"),
+                    None => unknown("unreadable branch table"),
                 },
                 Goes::Return => {
                     walked.returns = true;
@@ -186,9 +186,9 @@ impl<'a> Functions<'a> {
                 }
             }
             if sets_flags(&instruction) && !rest.is_empty() {
-                ahead.extend(goes_on.map(|depth| (next, depth, inverted(&rest))));
+                ahead.extend(falls_through.map(|depth| (next, depth, inverted(&rest))));
             }
-            ahead.extend(goes_on.map(|depth| (next, depth, rest)));
+            ahead.extend(falls_through.map(|depth| (next, depth, rest)));
         }
         walked
     }
@@ -225,7 +225,7 @@ mod tests {
 
     const HERE: u32 = 0x0800_0000;
 
-    /// The first function, walked.
+    /// Walks the first function.
     fn walked(functions: &[(&str, &[u16])]) -> Walked {
         let image = Image::of_code(HERE, functions);
         let mut functions = Functions::new(&image).expect("a decoder");
@@ -233,7 +233,7 @@ mod tests {
         functions.known(HERE).expect("walked").clone()
     }
 
-    /// What a function without calls takes.
+    /// Greatest depth of a function without calls.
     fn own(code: &[u16]) -> u32 {
         let walked = walked(&[("f", code)]);
         assert_eq!(walked.unknown, BTreeMap::new());
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn prologues_of_every_kind_count() {
+    fn all_kinds_of_prologues_are_counted() {
         // bx lr
         assert_eq!(own(&[0x4770]), 0);
         // push {r4-r7, lr}; sub sp, #16; add sp, #16; pop {r4-r7, pc}
@@ -263,28 +263,31 @@ mod tests {
     }
 
     #[test]
-    fn a_return_that_is_conditional_goes_on_as_deep_as_it_was() {
+    fn after_a_conditional_return_the_depth_is_unchanged() {
         // push {r4, lr}; cmp r0, #0; it eq; popeq {r4, pc}; sub sp, #8; add sp, #8; pop {r4, pc}
         assert_eq!(own(&[0xB510, 0x2800, 0xBF08, 0xBD10, 0xB082, 0xB002, 0xBD10]), 16);
         // push {r4, lr}; sub sp, #8; itt ne; addne sp, #8; popne {r4, pc}; add sp, #8; pop {r4, pc}
         assert_eq!(own(&[0xB510, 0xB082, 0xBF1C, 0xB002, 0xBD10, 0xB002, 0xBD10]), 16);
-        // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; and what is below depends: add sp,
-        // #8; pop {r4, pc}
+        // push {r4, lr}; ite eq; subeq sp, #8; subne sp, #16; add sp, #8; pop {r4, pc}: the depth
+        // depends on the condition
         let depends = &[0xB510, 0xBF0C, 0xB082, 0xB084, 0xB002, 0xBD10];
         assert!(only_unknown(depends).contains("returns without restoring"));
     }
 
     #[test]
-    fn a_comparison_in_a_block_may_end_what_it_executes() {
+    fn a_comparison_in_an_it_block_may_change_the_condition() {
         // push {r4, lr}; itt eq; cmpeq r0, #0; popeq {r4, pc}; pop {r4, pc}
         assert_eq!(own(&[0xB510, 0xBF04, 0x2800, 0xBD10, 0xBD10]), 8);
-        // The same, and what returns stands at the end: it may not be executed.
+        // The same without an unconditional return at the end.
         let walked = walked(&[("f", &[0xB510, 0xBF04, 0x2800, 0xBD10])]);
-        assert_eq!(walked.unknown.values().collect::<Vec<_>>(), ["runs off its end"]);
+        assert_eq!(
+            walked.unknown.values().collect::<Vec<_>>(),
+            ["runs past the end of the function"]
+        );
     }
 
     #[test]
-    fn calls_and_tail_calls_are_made_from_the_depth_there_is_then() {
+    fn calls_and_tail_calls_have_the_depth_at_the_call() {
         // push {r7, lr}; bl g; pop.w {r7, lr}; b.w h
         let f = [0xB580, 0xF000, 0xF804, 0xE8BD, 0x4080, 0xF000, 0xB801];
         let walked = walked(&[("f", &f), ("g", &[0x4770]), ("h", &[0x4770])]);
@@ -294,18 +297,21 @@ mod tests {
     }
 
     #[test]
-    fn behind_a_call_that_never_returns_there_is_nothing() {
-        // push {r7, lr}; bl g, behind which f ends. g: b .
+    fn code_after_a_call_that_never_returns_is_not_walked() {
+        // push {r7, lr}; bl g, the last instruction of f. g: b .
         let f: &[u16] = &[0xB580, 0xF000, 0xF800];
         let never = walked(&[("f", f), ("g", &[0xE7FE])]);
         assert_eq!((never.unknown.len(), never.returns), (0, false));
         let returns = walked(&[("f", f), ("g", &[0x4770])]);
-        assert_eq!(returns.unknown.values().collect::<Vec<_>>(), ["runs off its end"]);
+        assert_eq!(
+            returns.unknown.values().collect::<Vec<_>>(),
+            ["runs past the end of the function"]
+        );
     }
 
     #[test]
-    fn nothing_comes_after_an_undefined_instruction() {
-        // cbz r0, over the next; bx lr; udf #254, and the same with udf #0
+    fn an_undefined_instruction_ends_the_path() {
+        // cbz r0, past the next; bx lr; udf #254, and the same with udf #0
         for undefined in [0xDEFE, 0xDE00] {
             let walked = walked(&[("f", &[0xB100, 0x4770, undefined])]);
             assert_eq!((walked.unknown.len(), walked.returns), (0, true), "{undefined:x}");
@@ -313,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_a_table_leads_to_is_walked() {
+    fn all_targets_of_a_branch_table_are_walked() {
         // tbb [pc, r0]; .byte 2, 3, 5, 0; A: bx lr; B: push {r4, lr}; pop {r4, pc}; C: push {r4-r7,
         // lr}; pop {r4-r7, pc}
         let code = [0xE8DF, 0xF000, 0x0302, 0x0005, 0x4770, 0xB510, 0xBD10, 0xB5F0, 0xBDF0];
@@ -324,13 +330,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_in_the_instructions_is_unknown() {
+    fn unknown_depths_are_reported() {
         // sub sp, r0; bx lr
         assert!(only_unknown(&[0xEBAD, 0x0D00, 0x4770]).contains("sub.w sp, sp, r0"));
         // mov sp, r7; bx lr
         assert!(only_unknown(&[0x46BD, 0x4770]).contains("mov sp, r7"));
         // msr msp, r0; bx lr
-        assert_eq!(walked(&[("f", &[0xF380, 0x8808, 0x4770])]).begins, Some(HERE));
+        assert_eq!(walked(&[("f", &[0xF380, 0x8808, 0x4770])]).resets, Some(HERE));
         // nop; push {r0}; b to the push
         assert_eq!(only_unknown(&[0xBF00, 0xB401, 0xE7FD]), "the stack grows in a loop");
         // push {r4}; bx lr

@@ -7,7 +7,7 @@ use crate::cycles::{Image, ImageError};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Why there is no report.
+/// Why the stack could not be computed.
 #[derive(Debug, thiserror::Error)]
 pub enum StackError {
     /// The image cannot be read.
@@ -70,15 +70,15 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
     let mut add = |task: &str, priority: String, deepest: &Deepest| {
         entries.push(Entry { task: task.to_owned(), priority, deepest: deepest.clone() });
     };
-    let of_boot = calls.deepest_through(thread, boot).unwrap_or_default();
-    add("boot", "thread".to_owned(), &of_boot);
-    let of_idle = calls.deepest_without(thread, boot);
-    add("idle", "thread".to_owned(), &of_idle);
+    let boot_path = calls.deepest_through(thread, boot).unwrap_or_default();
+    add("boot", "thread".to_owned(), &boot_path);
+    let idle_path = calls.deepest_without(thread, boot);
+    add("idle", "thread".to_owned(), &idle_path);
     let mut levels: BTreeMap<Priority, u32> = BTreeMap::new();
     for handler in &description.handlers {
         let Some(&address) = vectors.get(&handler.vector) else { continue };
         let ends = matches!(handler.priority, Priority::Ends(_));
-        calls.may_begin = ends.then_some(address);
+        calls.may_reset = ends.then_some(address);
         let deepest = calls.deepest(address);
         if ends && deepest.bytes != 0 {
             let needs = format!("{}: it needs {} B of stack", handler.function, deepest.bytes);
@@ -93,9 +93,9 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
         add(&handler.task, priority, &deepest);
     }
     let default_handler = image.function(&description.default_handler)?.address;
-    calls.may_begin = Some(default_handler);
-    let of_default = calls.deepest(default_handler);
-    add("all other vectors", "any".to_owned(), &of_default);
+    calls.may_reset = Some(default_handler);
+    let default_path = calls.deepest(default_handler);
+    add("all other vectors", "any".to_owned(), &default_path);
 
     problems.extend(calls.unknown);
     for (index, indirect) in description.indirect.iter().enumerate() {
@@ -114,9 +114,9 @@ pub fn report(path: &Path, description: &Description) -> Result<Report, StackErr
     // One handler per priority, and the fault handlers on top.
     let interruptions = levels.len() as u32 + 1;
     let core_frames = interruptions * EXCEPTION_FRAME;
-    let stack = of_boot.bytes.max(of_idle.bytes)
+    let stack = boot_path.bytes.max(idle_path.bytes)
         + levels.values().sum::<u32>()
-        + of_default.bytes
+        + default_path.bytes
         + core_frames;
     let (statics, room_for_stack) = memory(&image, description, top, &mut problems);
     let ram = description.ram.bytes;
