@@ -1,4 +1,5 @@
-//! A table that grows row by row and can be gone on with: what was written whole counts, once.
+//! A result table that can be resumed after an interruption: complete rows are kept, a truncated
+//! last row is computed again.
 
 use crate::progress;
 use crate::trace::{TraceError, cell_error, write_atomically};
@@ -9,36 +10,36 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
-/// Why a table cannot be gone on with.
+/// Why a table could not be opened, resumed or written.
 #[derive(Debug, thiserror::Error)]
 pub enum LedgerError {
-    /// It could not be read or written.
+    /// The file could not be read or written.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// Somebody else is writing it.
+    /// Another process holds the lock.
     #[error("{}: another run is writing it", .0.display())]
     Busy(PathBuf),
-    /// It is the table of something else.
-    #[error("{}: begins with \"{found}\", and not with \"{expected}\": another run's table, or none", path.display())]
+    /// The header is that of another run, or the file is no table.
+    #[error("{}: begins with \"{found}\", expected \"{expected}\": not a table of this run", path.display())]
     Other {
         /// The file.
         path: PathBuf,
-        /// Its line.
+        /// The line found.
         found: String,
-        /// What the line of this run's table is.
+        /// The line of this run's table.
         expected: String,
     },
-    /// A row that this run did not write.
+    /// A row that this run would not write.
     #[error(transparent)]
     Row(#[from] TraceError),
 }
 
-/// The table of a run of many cases.
+/// The result table of a run of many cases.
 #[derive(Debug)]
 pub struct Ledger {
     path: PathBuf,
@@ -50,8 +51,8 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Opens a table of `count` cases, or begins it. A last line that was not written whole is
-    /// dropped; every other one must begin as `begin` says that its case's does.
+    /// Opens or creates a table of `count` cases. A truncated last row is dropped. The first cells
+    /// of every other row must equal `begin` of its case.
     pub fn open(
         path: &Path,
         head: &[String; 2],
@@ -78,8 +79,8 @@ impl Ledger {
         for (index, expected) in head.iter().enumerate() {
             match lines.next() {
                 Some(line) if line == expected => {}
-                // Nothing, or a beginning of it: an interruption could not be earlier.
-                None if begins(head, &bytes) => {
+                // Empty, or interrupted while writing the header: start again.
+                None if is_prefix_of_head(head, &bytes) => {
                     file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
                     let text = format!("{}\n{}\n", head[0], head[1]);
                     file.write_all(text.as_bytes()).map_err(failed)?;
@@ -108,7 +109,7 @@ impl Ledger {
         Self { path: path.to_owned(), file, head: head.clone(), count, rows }
     }
 
-    /// The cases that have no row.
+    /// Cases without a row.
     fn missing(&self) -> Vec<usize> {
         (0..self.count).filter(|case| !self.rows.contains_key(case)).collect()
     }
@@ -118,11 +119,11 @@ impl Ledger {
         self.rows.iter().map(|(&case, row)| (case, row.as_slice()))
     }
 
-    /// Adds a row, whose first cell is its case.
+    /// Appends a row; its first cell is the number of its case.
     fn append(&mut self, row: &[String]) -> Result<(), LedgerError> {
         let failed = |source| LedgerError::File { path: self.path.clone(), source };
         let line = line(row).map_err(failed)?;
-        // In one piece, so that an interruption leaves it whole or torn, but never mixed.
+        // One write per row: an interruption can only truncate the last row.
         self.file.write_all(&line).map_err(failed)?;
         if let Some(case) = row.first().and_then(|cell| cell.parse().ok()) {
             self.rows.insert(case, row.to_vec());
@@ -130,8 +131,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// Computes the rows that are missing, on all cores, and puts the table in order: it has the
-    /// same bytes however often it was interrupted.
+    /// Computes the missing rows on all cores, then sorts the table: its bytes do not depend on
+    /// interruptions.
     pub fn complete(
         &mut self,
         row: impl Fn(usize) -> Vec<String> + Sync,
@@ -148,7 +149,7 @@ impl Ledger {
                 }
                 Ok::<(), LedgerError>(())
             });
-            // Where the writer has stopped there is nobody to compute for, and it says why.
+            // Sending fails only if the writer stopped; its own error is returned below.
             let _stopped = missing
                 .into_par_iter()
                 .try_for_each_with(sender, |sender, case| sender.send(row(case)));
@@ -158,7 +159,7 @@ impl Ledger {
         self.finish()
     }
 
-    /// Puts the rows in the order of their cases.
+    /// Rewrites the table with its rows sorted by case.
     fn finish(&mut self) -> Result<(), LedgerError> {
         let failed = |source| LedgerError::File { path: self.path.clone(), source };
         let mut bytes = format!("{}\n{}\n", self.head[0], self.head[1]).into_bytes();
@@ -175,12 +176,12 @@ fn line(row: &[String]) -> std::io::Result<Vec<u8>> {
     writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()))
 }
 
-/// Whether bytes are a beginning of a table's head.
-fn begins(head: &[String; 2], bytes: &[u8]) -> bool {
+/// Whether the bytes are a prefix of the table's header.
+fn is_prefix_of_head(head: &[String; 2], bytes: &[u8]) -> bool {
     format!("{}\n{}\n", head[0], head[1]).as_bytes().starts_with(bytes)
 }
 
-/// The rows below the head, each with its case; every one must be of this table.
+/// Parses the rows below the header and checks that they belong to this run.
 fn rows(
     path: &Path,
     text: &str,
@@ -223,7 +224,7 @@ fn rows(
             return Err(refused(line, "(any)", format!("case {case} has no result")));
         }
         if rows.insert(case, row).is_some() {
-            return Err(refused(line, "case", format!("{case} is there twice")));
+            return Err(refused(line, "case", format!("{case} occurs twice")));
         }
     }
     Ok(rows)

@@ -1,5 +1,5 @@
-//! Many muscles and many inputs: every arithmetic against the reference, on all cores, into a table
-//! that can be gone on with after an interruption.
+//! Sweeps over muscles and inputs: every arithmetic against the reference, on all cores, into a
+//! table that can be resumed after an interruption.
 
 mod case;
 mod keys;
@@ -14,37 +14,37 @@ use crate::golden;
 use crate::ledger::{Ledger, LedgerError};
 use std::path::Path;
 
-/// What is swept, and in what it is computed.
+/// A sweep: its cases, arithmetics and accuracy class.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// The muscles and inputs.
     pub space: Space,
-    /// What each is computed in, besides the reference.
+    /// Arithmetics compared with the reference.
     pub arithmetics: Vec<Arithmetic>,
     /// Accuracy class.
     pub class: Class,
-    /// The arguments of `vm sweep` that name all this.
+    /// Arguments of `vm sweep` that reproduce the sweep.
     pub arguments: String,
 }
 
-/// One of the worst cases.
+/// One of the cases with the largest errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// Its number.
+    /// Number of the case.
     pub case: usize,
-    /// What it was computed in.
+    /// Arithmetic.
     pub arithmetic: Arithmetic,
     /// Largest error, % of F0.
     pub max_pct_f0: f64,
-    /// Flags that were set on the way.
+    /// Flags raised during the run.
     pub status: String,
 }
 
-/// Columns of an arithmetic.
+/// Columns per arithmetic.
 const MEASURED: [&str; 4] = ["max_pct_f0", "rms_pct_f0", "bias_pct_f0", "status"];
 
 impl Sweep {
-    /// The first two lines of the table: what made it, and its columns.
+    /// First two lines of the table: the command with the model's version, and the columns.
     fn head(&self) -> [String; 2] {
         let mut columns: Vec<String> = ["case", "mode"].map(str::to_owned).to_vec();
         columns.extend(KEYS.iter().map(|key| key.name.to_owned()));
@@ -56,15 +56,14 @@ impl Sweep {
         [format!("# vm sweep {} # {}", self.arguments, golden::model()), columns.join(",")]
     }
 
-    /// What a case's row begins with.
+    /// First cells of a case's row: number, mode and values of the keys.
     fn begin(number: usize, case: &Case) -> Vec<String> {
         let mut row = vec![number.to_string(), engine::mode_name(case.mode).to_owned()];
         row.extend(case.values.iter().map(f64::to_string));
         row
     }
 
-    /// Computes what is not in the table yet. When all is, the table is put in order, so that it
-    /// has the same bytes however often it was interrupted.
+    /// Computes the missing rows and sorts the table; see [`Ledger::complete`].
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |number| Self::begin(number, &self.space.case(number));
         let mut ledger = Ledger::open(output, &self.head(), self.space.count(), &begin)?;
@@ -72,7 +71,7 @@ impl Sweep {
         Ok(ledger)
     }
 
-    /// A case as a row of the table.
+    /// Computes the row of a case.
     fn row(&self, number: usize) -> Vec<String> {
         let case = self.space.case(number);
         let mut row = Self::begin(number, &case);
@@ -93,13 +92,13 @@ impl Sweep {
             }
         }
         problems.dedup();
-        // A row is a line, or it could be torn without its being seen.
+        // One line per row, so that a truncated row is recognised.
         row.push(problems.join("; ").replace(['\n', '\r'], " "));
         row
     }
 
-    /// The worst cases of a table, worst first: `most` of every arithmetic, of those that had
-    /// nothing to flag, and as many of the others.
+    /// The cases with the largest errors, worst first: for every arithmetic up to `most` without
+    /// flags and up to `most` with flags.
     pub fn worst(&self, ledger: &Ledger, most: usize) -> Vec<Worst> {
         let first = 2 + KEYS.len();
         let mut listed = Vec::new();
@@ -113,7 +112,7 @@ impl Sweep {
                     Some(Worst { case, arithmetic, max_pct_f0, status })
                 })
                 .collect();
-            // Not-a-number is worst of all.
+            // NaN sorts as the largest error.
             all.sort_by(|a, b| b.max_pct_f0.total_cmp(&a.max_pct_f0).then(a.case.cmp(&b.case)));
             for ok in [true, false] {
                 listed.extend(

@@ -108,5 +108,5 @@ fn patients_are_recovered_and_their_unseen_force_is_predicted() {
     // And not by another study.
     let other = Study { search: Search { starts: 1, seed: 2 }, ..study };
     let refused = other.run(&table).expect_err("other patients").to_string();
-    assert!(refused.contains("another run's table"), "{refused}");
+    assert!(refused.contains("not a table of this run"), "{refused}");
 }

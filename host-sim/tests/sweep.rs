@@ -176,7 +176,7 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
     refused(&["--vary", "tick_ms=1", "--modes", "fes"], &output, &["tick_ms=2", "tick_ms=1"]);
     let row = text.lines().last().expect("a row");
     for (line, words) in [
-        (row.to_owned(), &["line 4, column case: 0 is there twice"][..]),
+        (row.to_owned(), &["line 4, column case: 0 occurs twice"][..]),
         (row.replacen('0', "1", 1), &["\"1\": must be a whole number below 1"]),
         (row.replacen("97.5", "97", 1), &["column mass_g: \"97\": case 0 has 97.5"]),
         (row.replacen("fes", "continuous", 1), &["column mode: \"continuous\": case 0 has fes"]),
@@ -195,7 +195,7 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
     // Of another model.
     let other = text.replacen("golden bits ", "golden bits 0", 1);
     fs::write(&output, other).expect("a file");
-    refused(&grid, &output, &["another run's table"]);
+    refused(&grid, &output, &["not a table of this run"]);
     fs::write(&output, &text).expect("a file");
     let other = File::open(&output).expect("a file");
     other.lock().expect("a lock");
@@ -211,7 +211,7 @@ fn what_cannot_vary_is_named() {
         (&["--vary", "mass_g=0"], &["mass_g = 0", "from 0.01 to 30000"]),
         (&["--vary", "mass_g=1,x"], &["mass_g = x"]),
         (&["--vary", "mass_g=1:5"], &["mass_g: a grid needs values"]),
-        (&["--random", "5", "--vary", "mass_g=5:1"], &["mass_g = 5:1: must go up"]),
+        (&["--random", "5", "--vary", "mass_g=5:1"], &["mass_g = 5:1: the end is below the start"]),
         (&["--vary", "mass_g=1", "--vary", "mass_g=2"], &["mass_g: given twice"]),
         (&["--random", "0"], &["0 cases: must be 1 to 1000000"]),
         (&["--arithmetics", "reference"], &["--arithmetics reference"]),

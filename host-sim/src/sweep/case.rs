@@ -1,4 +1,4 @@
-//! A case: muscle, inputs, and the error of every arithmetic.
+//! A case: muscle, inputs and the error of every arithmetic.
 
 use super::keys::KEYS;
 use crate::engine::{self, Arithmetic, Class};
@@ -56,7 +56,7 @@ impl Case {
         )
     }
 
-    /// The muscle, or its refusal.
+    /// The muscle, or why it was refused.
     pub fn muscle(&self) -> Result<Muscle, String> {
         let named = muscle_file::parse(&self.muscle_file(), Path::new("muscle"));
         Ok(named.map_err(|error| error.to_string())?.muscle)
@@ -78,8 +78,8 @@ impl Case {
         let input = |tick: usize| {
             let time = tick as f64 * time_step;
             let activation = 0.5 * (from + to) + 0.5 * (from - to) * (TAU * hz * time).cos();
-            let begun = (time / START).min(1.0);
-            let path = middle + swing * begun * begun * (TAU * path_hz * time).sin();
+            let fade_in = (time / START).min(1.0);
+            let path = middle + swing * fade_in * fade_in * (TAU * path_hz * time).sin();
             Input {
                 activation,
                 path_length: path.min(end),
@@ -103,7 +103,7 @@ impl Case {
         text
     }
 
-    /// Error and flags of every arithmetic against the reference, or the reason why there is none.
+    /// Error and flags of every arithmetic against the reference, or why the case could not be run.
     pub fn errors(
         &self,
         arithmetics: &[Arithmetic],

@@ -29,7 +29,7 @@ pub enum SpaceError {
     /// Not `key=...`.
     #[error("\"{0}\": must be key=value, key=from:to or key=value,value,... with a key of {keys}", keys = names())]
     Form(String),
-    /// A value that is no number or out of range.
+    /// A value that is not a number or is out of range.
     #[error("{key} = {value}: must be a number from {least} to {most}")]
     Value {
         /// The key.
@@ -42,7 +42,7 @@ pub enum SpaceError {
         most: f64,
     },
     /// A range whose end is below its start.
-    #[error("{key} = {from}:{to}: must go up")]
+    #[error("{key} = {from}:{to}: the end is below the start")]
     Order {
         /// The key.
         key: &'static str,
@@ -68,7 +68,7 @@ fn names() -> String {
     KEYS.map(|key| key.name).join(", ")
 }
 
-/// Limit of memory: rows are a kilobyte each.
+/// Memory limit: a row takes about a kilobyte.
 pub const MOST_CASES: usize = 1_000_000;
 
 impl FromStr for Variation {
@@ -139,15 +139,15 @@ impl Space {
             None => Values::Listed(vec![key.nominal]),
         });
         let mut given = [false; KEYS.len()];
-        for Variation { key, values: of_key } in variations {
+        for Variation { key, values: key_values } in variations {
             let name = KEYS[*key].name;
             if std::mem::replace(&mut given[*key], true) {
                 return Err(SpaceError::Twice(name.to_owned()));
             }
-            if random.is_none() && matches!(of_key, Values::Range(..)) {
+            if random.is_none() && matches!(key_values, Values::Range(..)) {
                 return Err(SpaceError::RangeInGrid(name));
             }
-            values[*key] = of_key.clone();
+            values[*key] = key_values.clone();
         }
         let each = match random {
             Some((count, _)) => Some(count),
@@ -178,12 +178,12 @@ impl Space {
             generator
         });
         let mut values = [0.0; KEYS.len()];
-        for ((value, of_key), key) in values.iter_mut().zip(&self.values).zip(&KEYS) {
-            *value = match (&mut generator, of_key) {
-                (Some(generator), of_key) => {
+        for ((value, key_values), key) in values.iter_mut().zip(&self.values).zip(&KEYS) {
+            *value = match (&mut generator, key_values) {
+                (Some(generator), key_values) => {
                     // 53 bits in [0, 1).
                     let share = (generator.next_u64() >> 11) as f64 * 2_f64.powi(-53);
-                    drawn(of_key, share, key.logarithmic)
+                    drawn(key_values, share, key.logarithmic)
                 }
                 (None, Values::Listed(listed)) => {
                     let value = listed[index % listed.len()];
