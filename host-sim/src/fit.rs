@@ -1,9 +1,8 @@
-//! A muscle of one's own: the numbers of a muscle file fitted to recordings, and what the
-//! recordings can and cannot tell of them.
+//! Fits the numbers of a muscle file to recordings, with the uncertainty of each number.
 //!
 //! Non-linear least squares by Levenberg and Marquardt's method (crate `levenberg-marquardt`, after
-//! MINPACK) from several starts. The shape of the file that lists recordings and free parameters is
-//! in `docs/trials.md`.
+//! MINPACK) from several starts. The format of the file that lists recordings and free parameters
+//! is in `docs/trials.md`.
 
 mod error;
 mod keys;

@@ -1,14 +1,14 @@
-//! Why there is no fitted muscle.
+//! Errors of a fit.
 
 use crate::engine::RunError;
 use crate::muscle_file::MuscleFileError;
 use crate::trace::TraceError;
 use std::path::PathBuf;
 
-/// Why there is no fitted muscle.
+/// Why a fit failed.
 #[derive(Debug, thiserror::Error)]
 pub enum FitError {
-    /// The muscle to start from was refused.
+    /// The starting muscle was refused.
     #[error(transparent)]
     Muscle(#[from] MuscleFileError),
     /// A recording was refused.
@@ -19,24 +19,27 @@ pub enum FitError {
     Trials {
         /// The file.
         path: PathBuf,
-        /// Key, value and limit, or what TOML found wrong.
+        /// Key, value and limit, or the TOML error.
         problem: String,
     },
-    /// The muscle to start from cannot be run on a trial.
+    /// The starting muscle could not be run on a trial.
     #[error("trial \"{trial}\": {source}")]
     Start {
         /// The trial.
         trial: String,
-        /// Why.
+        /// The error of the run.
         source: RunError,
     },
-    /// No start came to an end.
-    #[error("none of {0} starts led anywhere: {1}")]
+    /// The search converged from no start.
+    #[error("the search converged from none of {0} starts: {1}")]
     NoSolution(usize, String),
     /// The recordings do not determine these parameters, and they have no prior.
     #[error(
-        "not determined by the recordings: {}; give a prior, other recordings, or leave them as they are",
+        "not determined by the recordings: {}; give a prior, add recordings, or do not fit them",
         .0.join(", ")
     )]
     Undetermined(Vec<String>),
 }
+
+/// Makes an error of a problem in the list of trials.
+pub(super) type Refuse<'a> = &'a dyn Fn(String) -> FitError;

@@ -2,7 +2,8 @@
 
 use crate::reference::{Elements, Fatigue, FiberType, Muscle};
 
-/// A number of a muscle file: key, file units per SI unit, and accessor; none without sag or yield.
+/// A number of a muscle file: key, file units per SI unit, and accessor (`None` without sag or
+/// yield).
 type Number<Part> = (&'static str, f64, fn(&mut Part) -> Option<&mut f64>);
 
 const MUSCLE: &[Number<Muscle>] = &[
@@ -62,12 +63,12 @@ const FIBER: &[Number<FiberType>] = &[
     ("TY_ms", 1e3, |t| t.yielding.as_mut().map(|y| &mut y.TY)),
 ];
 
-/// F0 of a muscle; its mass follows from it.
+/// F0 of a muscle, which sets its mass.
 pub const FORCE: &str = "max_isometric_force_n";
 /// One factor on Tf1 to Tf4 of all types.
 pub const EXCITATION: &str = "excitation_time_factor";
 
-/// Time constants that the factor multiplies, of every type.
+/// Time constants of every type that the factor multiplies.
 pub const EXCITATION_TIMES: &[&str] = &["Tf1_ms", "Tf2_ms", "Tf3_ms", "Tf4_ms"];
 
 /// Place of a parameter in a muscle.
@@ -119,7 +120,7 @@ impl Key {
         find(MUSCLE, name).map(Self::Muscle)
     }
 
-    /// The number in the file's unit; none if the muscle has no such part.
+    /// The number in the file's unit; `None` if the muscle has no such part.
     pub fn value(&self, muscle: &Muscle) -> Option<f64> {
         match self {
             Self::Force => Some(muscle.f0()),
@@ -147,9 +148,9 @@ impl Key {
             }
             Self::Fraction(index) => {
                 let before: f64 = muscle.fibers.iter().map(|fiber| fiber.fraction).sum();
-                let own = muscle.fibers.get(*index).map_or(0.0, |fiber| fiber.fraction);
+                let old = muscle.fibers.get(*index).map_or(0.0, |fiber| fiber.fraction);
                 for (other, fiber) in muscle.fibers.iter_mut().enumerate() {
-                    let share = fiber.fraction / (before - own) * (1.0 - value);
+                    let share = fiber.fraction / (before - old) * (1.0 - value);
                     fiber.fraction = if other == *index { value } else { share };
                 }
             }
@@ -182,7 +183,7 @@ pub fn set_force(muscle: &mut Muscle, force: f64) {
     muscle.mass *= force / muscle.f0();
 }
 
-/// All names, for a message.
+/// All names, for error messages.
 pub fn names() -> String {
     let list = |prefix: &str, names: Vec<&str>| {
         names.iter().map(|name| format!("{prefix}{name}")).collect::<Vec<_>>().join(", ")
@@ -204,7 +205,7 @@ mod tests {
     use crate::scenario::paper_muscle;
 
     #[test]
-    fn every_name_sets_what_it_reads() {
+    fn every_key_reads_back_the_value_it_set() {
         let mut start = paper_muscle();
         start.fatigue = Some(Fatigue { T_fat: 18.0, T_rec: 30.0, fit_min: 0.2, beta: 0.6 });
         let mut seen = 0;
@@ -223,7 +224,7 @@ mod tests {
             }
             seen += 1;
         }
-        // All but sag, which the first type does not have.
+        // All except the three of sag, which the first type does not have.
         assert_eq!(seen, names().split(", ").count() - 3);
     }
 

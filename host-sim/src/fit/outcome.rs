@@ -1,4 +1,4 @@
-//! A fit from files to results: parameters with their uncertainty, and every trial with the model.
+//! Runs a fit: parameters with their uncertainty, and the model's force in every trial.
 
 use super::error::FitError;
 use super::problem::Problem;
@@ -12,10 +12,10 @@ use crate::reference::Muscle;
 use rayon::prelude::*;
 use vm_nostd::Status;
 
-/// A trial and the model's force.
+/// A trial with the model's force.
 #[derive(Clone, Debug)]
 pub struct TrialFit {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Role: fit or predict.
     pub role: Role,
@@ -23,7 +23,7 @@ pub struct TrialFit {
     pub times: Vec<f64>,
     /// Measured force, N.
     pub measured: Vec<f64>,
-    /// The model's, N.
+    /// Force of the model, N.
     pub model: Vec<f64>,
     /// Mean absolute error, % of F0.
     pub mae_pct_f0: f64,
@@ -35,29 +35,29 @@ pub struct TrialFit {
     pub status: Status,
 }
 
-/// The fitted muscle in another arithmetic.
+/// Difference of the fitted muscle in another arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Confirmed {
-    /// Which.
+    /// Arithmetic.
     pub arithmetic: Arithmetic,
-    /// Its largest and root mean square difference from `f64`, of all trials, % of F0.
+    /// Largest and root mean square difference from `f64` over all trials, % of F0.
     pub difference: (f64, f64),
 }
 
 /// Result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The muscle.
+    /// The fitted muscle.
     pub muscle: Muscle,
-    /// The recruitment curve, in the units of the list of trials.
+    /// The fitted recruitment curve, in the units of the list of trials.
     pub curve: Option<[f64; 4]>,
     /// Every parameter.
     pub estimates: Vec<Estimate>,
     /// Pairs that trade off.
     pub pairs: Vec<Pair>,
-    /// Root mean square of the residuals, in stated noise.
+    /// Root mean square of the residuals over the stated noise.
     pub noise_ratio: f64,
-    /// Stated noise, N.
+    /// Stated noise (standard deviation of a reading), N.
     pub noise: f64,
     /// Every trial.
     pub trials: Vec<TrialFit>,
@@ -67,12 +67,12 @@ pub struct Fit {
     pub starts: (usize, usize),
 }
 
-/// Arithmetics in which a fitted muscle is confirmed, besides `f64`.
+/// Arithmetics that a fitted muscle is run in, besides `f64`.
 pub const CONFIRMED: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
 
 /// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass. The
-/// result is run again in the arithmetics `confirm`; if fixed point is one of them, the search keeps to
-/// muscles that it accepts.
+/// result is run again in the arithmetics `confirm`. If fixed point is among them, the search is
+/// limited to muscles that it accepts.
 pub fn fit(
     start: &NamedMuscle,
     keep_force: bool,
@@ -85,7 +85,8 @@ pub fn fit(
     let (solution, near) = search.best(&problem)?;
     let values = &solution.values;
     let failed = |why: &str| FitError::NoSolution(search.starts, why.to_owned());
-    let jacobian = problem.jacobian(values).ok_or_else(|| failed("no derivatives at the end"))?;
+    let jacobian =
+        problem.jacobian(values).ok_or_else(|| failed("no derivatives at the solution"))?;
     let noise = problem.trials.noise;
     let played = |arithmetic| {
         problem

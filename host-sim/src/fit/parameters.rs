@@ -8,11 +8,11 @@ use serde::Deserialize;
 /// Place of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// The muscle.
+    /// A number of the muscle.
     Muscle(Key),
-    /// The recruitment curve: the value of this index.
+    /// A value of the recruitment curve, by index.
     Curve(usize),
-    /// An offset that signals of the trials name.
+    /// An offset that signals of trials refer to.
     Offset,
 }
 
@@ -20,7 +20,7 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
-    /// In the parameter's unit.
+    /// Mean, in the parameter's unit.
     pub mean: f64,
     /// Standard deviation, in the parameter's unit.
     pub spread: f64,
@@ -29,7 +29,7 @@ pub struct Prior {
 /// A free parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name, of a key of the muscle file or of an offset.
+    /// Key of the muscle file, or name of an offset.
     pub name: String,
     /// Place.
     pub place: Place,
@@ -41,25 +41,25 @@ pub struct Parameter {
     pub prior: Option<Prior>,
 }
 
-/// Factor around the start within which other starts are drawn, unless bounds are nearer.
+/// Starts are drawn within this factor of the given start, and within the bounds.
 const DRAWN: f64 = 3.0;
 
 impl Parameter {
-    /// Range of starts, against which determination is judged: the bounds, within a factor of three
-    /// of the start.
+    /// Range of starts: the bounds, but at most a factor of three from the start. A parameter with
+    /// a confidence interval as wide as this counts as undetermined.
     pub fn range(&self) -> (f64, f64) {
         let (least, most) = self.bounds;
         let (a, b) = (self.start / DRAWN, self.start * DRAWN);
         if a == b { (least, most) } else { (least.max(a.min(b)), most.min(a.max(b))) }
     }
 
-    /// The parameter from an unbounded number: a logistic curve from bound to bound.
+    /// Maps an unbounded number to a value between the bounds (logistic).
     pub fn bounded(&self, free: f64) -> f64 {
         let (least, most) = self.bounds;
         least + (most - least) / (1.0 + (-free).exp())
     }
 
-    /// The unbounded number of a value between the bounds.
+    /// Inverse of [`Parameter::bounded`].
     pub fn unbounded(&self, value: f64) -> f64 {
         let (least, most) = self.bounds;
         let share = ((value - least) / (most - least)).clamp(1e-6, 1.0 - 1e-6);
@@ -73,8 +73,8 @@ impl Parameter {
     }
 }
 
-/// A muscle with its parameters set. F0 is set last, and kept with `keep_force`, whatever else
-/// changes.
+/// The muscle with its parameters set. F0 is set last; with `keep_force` it keeps its value unless
+/// it is a parameter itself.
 pub fn applied(
     start: &Muscle,
     parameters: &[Parameter],
@@ -96,7 +96,7 @@ pub fn applied(
     muscle
 }
 
-/// Range of valid values of a key around the muscle's own, with all else unchanged.
+/// Range of valid values of a key around the muscle's value, with all other numbers unchanged.
 pub fn admitted(muscle: &Muscle, key: &Key) -> Option<(f64, f64)> {
     let start = key.value(muscle)?;
     let valid = |value: f64| {
@@ -137,9 +137,9 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_those_of_the_builder() {
+    fn default_bounds_are_the_builders_limits() {
         let muscle = paper_muscle();
-        // MuscleParams: f0.5 is 0.5 to 200 pps; nf0 and others follow from what they make.
+        // MuscleParams: f0.5 is 0.5 to 200 pps.
         let (least, most) = admitted(&muscle, &key("fiber[0].f05_pps")).expect("a range");
         assert!((least - 0.5).abs() < 1e-3 && (most - 200.0).abs() < 1e-3, "{least} {most}");
         let (least, most) = admitted(&muscle, &key("recruitment_saturation")).expect("a range");
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_goes_to_its_bounds_and_no_further() {
+    fn a_parameter_stays_within_its_bounds() {
         let parameter = Parameter {
             name: "fascicle_length_cm".to_owned(),
             place: Place::Muscle(key("fascicle_length_cm")),
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn force_holds_whatever_else_changes() {
+    fn f0_is_set_last_and_kept_on_request() {
         let muscle = paper_muscle();
         let parameter = |name: &str, start| Parameter {
             name: name.to_owned(),

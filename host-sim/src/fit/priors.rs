@@ -1,19 +1,18 @@
-//! Spreads of parameters among people: `data/priors.csv`, which says where each is from, or that it
-//! is assumed.
+//! Spreads of parameters among people, with their sources: `data/priors.csv`.
 
 use serde::Deserialize;
 
 const TABLE: &str = include_str!("../../data/priors.csv");
 
-/// What a spread was taken from.
+/// Basis of a spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// Measured among people, or among motor units of people.
     People,
-    /// Between published sets of coefficients: how far their authors are apart.
+    /// Difference between published sets of coefficients.
     Presets,
-    /// Nobody's measurement: an assumption, to be replaced.
+    /// Not measured: an assumption, to be replaced.
     Assumed,
 }
 
@@ -25,9 +24,9 @@ pub struct Spread {
     pub key: String,
     /// Standard deviation over mean.
     pub relative_spread: f64,
-    /// What it was taken from.
+    /// Basis.
     pub basis: Basis,
-    /// Where it is from, or what is assumed.
+    /// Source, or the assumption.
     pub source: String,
 }
 
@@ -39,7 +38,7 @@ pub fn all() -> Vec<Spread> {
         .collect()
 }
 
-/// The spread of a parameter: of its whole name or, where the table has none, of its last part.
+/// The spread of a parameter: that of its whole name, otherwise that of its last part.
 pub fn spread(name: &str) -> Option<Spread> {
     let last = name.rsplit_once('.').map_or(name, |(_, key)| key);
     let rows = all();
@@ -47,13 +46,12 @@ pub fn spread(name: &str) -> Option<Spread> {
     find(name).or_else(|| find(last))
 }
 
-/// The published spread of a parameter, as a share of its mean; none where there is only an
-/// assumption.
+/// The published spread of a parameter over its mean; `None` if the spread is only assumed.
 pub fn published(name: &str) -> Option<f64> {
     spread(name).filter(|row| row.basis != Basis::Assumed).map(|row| row.relative_spread)
 }
 
-/// All that have a published one, for a message.
+/// Keys with a published spread, for error messages.
 pub fn names() -> String {
     let rows = all().into_iter().filter(|row| row.basis != Basis::Assumed);
     rows.map(|row| row.key).collect::<Vec<_>>().join(", ")
@@ -67,7 +65,7 @@ mod tests {
     use crate::muscle_file::curve;
 
     #[test]
-    fn every_row_is_of_a_parameter_and_says_where_it_is_from() {
+    fn every_row_has_a_known_parameter_and_a_source() {
         for row in all() {
             let key = &row.key;
             let fiber = format!("fiber[0].{key}");
@@ -75,7 +73,7 @@ mod tests {
                 || key.strip_prefix(curve::CURVE).is_some_and(|key| curve::key(key).is_some());
             assert!(known, "{key}: no parameter");
             assert!((0.01..=1.0).contains(&row.relative_spread), "{key}");
-            // A year, or the word: neither fits into less.
+            // A source with a year, or the word "assumed", is longer than this.
             assert!(row.source.len() > 20, "{key}: {}", row.source);
             let says = row.source.contains("assum");
             assert_eq!(says, row.basis == Basis::Assumed, "{key}: {}", row.source);
@@ -83,14 +81,14 @@ mod tests {
     }
 
     #[test]
-    fn spreads_between_presets_are_those_of_the_table() {
+    fn spreads_between_presets_follow_from_the_presets() {
         let of =
             |set: &str, key: &str| coefficients::fiber_row(set).and_then(|r| r.get(key).copied());
         for row in all().into_iter().filter(|row| row.basis == Basis::Presets) {
             let between = |fiber: &str| {
                 let sets = ["human-vm4", "feline-vm4"].map(|set| format!("{set}/{fiber}"));
                 let [one, other] = sets.map(|set| of(&set, &row.key).expect("a coefficient"));
-                // Of two values, standard deviation is difference over the root of two.
+                // The standard deviation of two values is their difference over the root of two.
                 ((one - other) / (one + other)).abs() * 2_f64.sqrt()
             };
             let widest = between("slow").max(between("fast"));
@@ -103,7 +101,7 @@ mod tests {
         assert_eq!(published("fiber[1].f05_pps"), Some(0.333));
         assert!(spread("max_path_length_cm").is_some());
         assert_eq!(published("max_path_length_cm"), None);
-        // Of fatigue, not that of the force-length relation.
+        // beta of fatigue, not of the force-length relation.
         assert!(spread("fatigue.beta").is_some() && spread("fiber[0].beta").is_none());
     }
 }

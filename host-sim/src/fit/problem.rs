@@ -1,4 +1,4 @@
-//! The model held against the recordings: forces, residuals and their derivatives.
+//! Compares the model with the recordings: forces, residuals and their derivatives.
 
 use super::error::FitError;
 use super::parameters::{Parameter, Place, applied};
@@ -10,30 +10,30 @@ use crate::trace::InputTrace;
 use nalgebra::DMatrix;
 use vm_nostd::{Pulse, RecruitmentCurve, Status};
 
-/// Recordings, and the muscle that the search starts from.
+/// Recordings and the starting muscle.
 #[derive(Clone, Debug)]
 pub struct Problem {
     start: Muscle,
-    /// F0 is kept where fascicle length or tension change.
+    /// Whether F0 is kept while other parameters change.
     keep_force: bool,
-    /// Fixed point has to accept every muscle of the search.
+    /// Whether fixed point must accept every muscle of the search.
     in_fixed_point: bool,
     pub(super) trials: Trials,
 }
 
-/// What a trial looks like with some parameters.
+/// Result of running a trial with given parameters.
 #[derive(Clone, Debug)]
 pub struct Played {
-    /// Model's force at every reading, N.
+    /// Force of the model at every reading, N.
     pub model: Vec<f64>,
     /// Measured force at every reading, N.
     pub measured: Vec<f64>,
-    /// What was saturated on the way.
+    /// Flags raised during the run.
     pub status: Status,
 }
 
 impl Problem {
-    /// Of recordings and a muscle to start from; refused where that cannot be run on them.
+    /// Checks that the starting muscle can be run on all recordings.
     pub fn new(
         start: Muscle,
         keep_force: bool,
@@ -102,7 +102,7 @@ impl Problem {
         Ok(Played { model, measured, status })
     }
 
-    /// What the muscle is made to do in a trial.
+    /// Inputs of a trial.
     pub fn inputs(&self, trial: &Trial, values: &[f64]) -> Result<InputTrace, RunError> {
         let time_step = self.trials.time_step;
         let begin = trial.begin;
@@ -114,7 +114,7 @@ impl Problem {
             .transpose()?;
         let input = |tick: usize| {
             let end = (start + tick as f64 * time_step).max(begin);
-            // In force during the tick.
+            // Inputs that are constant during a tick are sampled at its middle.
             let middle = (end - 0.5 * time_step).max(begin);
             let activation = match (&trial.drive, &curve) {
                 (Drive::Activation(activation), _) => activation.at(middle, values),
@@ -131,12 +131,13 @@ impl Problem {
             }
         };
         let mut inputs: Vec<Input> = (0..=ticks.max(1)).map(input).collect();
-        // The first row is where the muscle rests.
+        // The muscle is at rest on the first row.
         inputs[0].activation = 0.0;
         Ok(InputTrace { start, time_step, inputs })
     }
 
-    /// Residuals of all trials of role fit, in noise; none where no muscle has these values.
+    /// Residuals of all trials of role fit, over the noise; `None` if a muscle with these values is
+    /// refused.
     pub fn residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
         let mut residuals = Vec::new();
         for trial in self.trials(Role::Fit) {
@@ -153,16 +154,16 @@ impl Problem {
         residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
     }
 
-    /// How far parameters are from what is believed of them, in spreads.
-    pub fn departures(&self, values: &[f64]) -> Vec<f64> {
+    /// Residuals of the priors: distance from the mean, in spreads.
+    pub fn prior_residuals(&self, values: &[f64]) -> Vec<f64> {
         let of = |(parameter, value): (&Parameter, &f64)| {
             parameter.prior.map(|prior| (value - prior.mean) / prior.spread)
         };
         self.parameters().iter().zip(values).filter_map(of).collect()
     }
 
-    /// Derivatives of the residuals by each parameter in units of its range, by central
-    /// differences, one-sided where the muscle beyond cannot be.
+    /// Derivatives of the residuals by each parameter in units of its range: central differences,
+    /// one-sided where the muscle on the other side is refused.
     pub fn jacobian(&self, values: &[f64]) -> Option<DMatrix<f64>> {
         const STEP: f64 = 1e-4;
         let middle = self.residuals(values)?;
@@ -197,10 +198,10 @@ impl Problem {
     }
 }
 
-/// A sequence between its places.
-fn interpolated(values: &[f64], place: f64) -> f64 {
-    let place = place.max(0.0);
-    let before = (place as usize).min(values.len() - 1);
+/// Linear interpolation of a sequence at a fractional index.
+fn interpolated(values: &[f64], index: f64) -> f64 {
+    let index = index.max(0.0);
+    let before = (index as usize).min(values.len() - 1);
     let after = (before + 1).min(values.len() - 1);
-    values[before] + (values[after] - values[before]) * (place - before as f64).min(1.0)
+    values[before] + (values[after] - values[before]) * (index - before as f64).min(1.0)
 }

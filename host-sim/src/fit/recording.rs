@@ -1,10 +1,10 @@
-//! One column of a file of measured numbers over time, in the units of the file.
+//! A recording: one column of a file over time, in the units of the file.
 
 use crate::trace::{TraceError, cell_error};
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// A column by its name in the header, or by its number, counted from 1, in a file without one.
+/// A column, by its name in the header or, in a file without header, by its number counted from 1.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Column {
@@ -28,9 +28,9 @@ impl Column {
 pub struct Source {
     /// The file.
     pub path: PathBuf,
-    /// One character, or none for any run of blanks.
+    /// Delimiter; `None` for any run of blanks.
     pub delimiter: Option<u8>,
-    /// Lines before the header, or before the numbers where there is no header.
+    /// Lines before the header or, without header, before the numbers.
     pub skip_lines: usize,
     /// Times, s.
     pub time: Column,
@@ -41,15 +41,15 @@ pub struct Source {
 /// Values at increasing times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Time (s), value and line of each.
+    /// Time (s), value and line number.
     rows: Vec<(f64, f64, u64)>,
     path: PathBuf,
     column: String,
 }
 
-/// Equal readings at the greatest force that count as saturation.
+/// This many consecutive readings at the greatest force count as saturation.
 const SATURATED: usize = 5;
-/// Least number of readings of a trial.
+/// Minimum number of readings in a trial.
 const FEWEST: usize = 8;
 
 impl Recording {
@@ -95,7 +95,7 @@ impl Recording {
                 && t <= before
             {
                 let how = if t == before { "repeats" } else { "goes back from" };
-                let problem = format!("{t} {how} {before}, the time before");
+                let problem = format!("{t} {how} {before}, the previous time");
                 return Err(cell_error(path, line, &source.time.label(), problem));
             }
             rows.push((t, v, line));
@@ -117,15 +117,16 @@ impl Recording {
         let greatest = self.rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
         let least = self.rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min);
         if greatest == least {
-            let problem = format!("{greatest} in every row of the window: a dead channel");
+            let problem = format!("{greatest} in every row of the window: dead channel");
             return Err(self.wrong(0, problem));
         }
         let saturated =
             self.rows.windows(SATURATED).position(|few| few.iter().all(|row| row.1 == greatest));
         match saturated {
             Some(index) => {
-                let problem =
-                    format!("{greatest}, the greatest, {SATURATED} times on end: saturated");
+                let problem = format!(
+                    "{greatest}, the greatest value, in {SATURATED} consecutive rows: saturated"
+                );
                 Err(self.wrong(index, problem))
             }
             None => Ok(()),
@@ -137,7 +138,7 @@ impl Recording {
         cell_error(&self.path, line, &self.column, problem)
     }
 
-    /// The readings from one time to another, both included.
+    /// The readings from one time to another, inclusive.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let rows = self.rows.iter().filter(|row| (from..=to).contains(&row.0)).copied().collect();
@@ -166,8 +167,7 @@ impl Recording {
     }
 }
 
-/// The lines of a file after those that are skipped, each with its number and its cells; empty
-/// lines are none.
+/// Number and cells of each line after the skipped ones, without empty lines.
 fn cells(text: &str, source: &Source) -> Result<Vec<(u64, Vec<String>)>, TraceError> {
     let skipped = source.skip_lines as u64;
     let Some(delimiter) = source.delimiter else {

@@ -1,5 +1,5 @@
-//! A signal of a trial: constant, steps or a recording, with a scale and an offset that may be
-//! free.
+//! A signal of a trial: constant, steps or a recording, with a scale and an offset, which may be a
+//! free parameter.
 
 use super::error::FitError;
 use super::recording::{Column, Recording, Source};
@@ -52,7 +52,7 @@ impl Default for OffsetKey {
 pub enum Offset {
     /// A constant.
     Fixed(f64),
-    /// The value of the free parameter of this index.
+    /// The free parameter with this index.
     Free(usize),
 }
 
@@ -69,7 +69,7 @@ impl Offset {
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
     Constant(f64),
-    /// From each time (s) on; the first also before.
+    /// Values from each time (s) on; the first also before.
     Steps(Vec<(f64, f64)>),
     Recorded(Recording),
 }
@@ -89,7 +89,7 @@ impl Signal {
     }
 
     /// Reads a signal with its file in `folder`. `free` are the names of free offsets; `refuse`
-    /// makes an error of a key.
+    /// makes an error of a problem.
     pub fn read(
         table: &SignalTable,
         folder: &Path,
@@ -131,7 +131,7 @@ impl Signal {
         Ok(Self { shape, scale: table.scale, offset })
     }
 
-    /// Its recording, if it is one.
+    /// The recording, if the signal is one.
     pub fn recording(&self) -> Option<&Recording> {
         match &self.shape {
             Shape::Recorded(recording) => Some(recording),
@@ -139,7 +139,7 @@ impl Signal {
         }
     }
 
-    /// Its value at a time (s), with these values of the free parameters.
+    /// Value at a time (s) for given free parameters.
     pub fn at(&self, time: f64, values: &[f64]) -> f64 {
         let raw = match &self.shape {
             Shape::Constant(constant) => *constant,
@@ -152,25 +152,25 @@ impl Signal {
         self.scaled(raw, values)
     }
 
-    /// A raw value of it, scaled and offset.
+    /// Applies scale and offset to a raw value.
     pub fn scaled(&self, raw: f64, values: &[f64]) -> f64 {
         raw * self.scale + self.offset.value(values)
     }
 
-    /// The same signal, times a factor.
+    /// The signal times a factor.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self { scale: self.scale * factor, ..self }
     }
 
-    /// Replaces the index of its free parameter according to `places`.
+    /// Replaces the index of the free offset `i` by `places[i]`.
     pub fn renumber(&mut self, places: &[usize]) {
         if let Offset::Free(index) = &mut self.offset {
             *index = places[*index];
         }
     }
 
-    /// Its free offset, if any.
+    /// Index of the free offset, if any.
     pub fn free(&self) -> Option<usize> {
         match self.offset {
             Offset::Free(index) => Some(index),

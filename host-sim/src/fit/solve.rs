@@ -1,4 +1,4 @@
-//! The search: Levenberg and Marquardt's method from several starts, on all cores.
+//! The search: Levenberg-Marquardt from several starts, on all cores.
 
 use super::error::FitError;
 use super::problem::Problem;
@@ -10,39 +10,39 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-/// How to search.
+/// Settings of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
-    /// How many starts: the first where the parameters start, the others drawn.
+    /// Number of starts: the first as given, the others drawn.
     pub starts: usize,
-    /// What they are drawn from; the same seed gives the same fit.
+    /// Seed of the draw; the same seed gives the same fit.
     pub seed: u64,
 }
 
-/// What a start led to.
+/// Solution reached from a start.
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// Values of the parameters.
     pub values: Vec<f64>,
-    /// Half the sum of squares of residuals and departures.
+    /// Half the sum of squares of the residuals, including those of the priors.
     pub objective: f64,
 }
 
-/// Evaluations of the model per parameter that a start may take.
+/// Maximum number of model evaluations per parameter and start.
 const PATIENCE: usize = 20;
-/// Relative change of the sum of squares, or of the parameters, that ends a search.
+/// Convergence: relative change of the sum of squares or of the parameters.
 const TOLERANCE: f64 = 1e-6;
-/// Step of the one-sided differences, in unbounded numbers.
+/// Step of the one-sided differences, in the unbounded parameters.
 const STEP: f64 = 1e-5;
-/// A residual where no muscle can be, in noise: worse than any of a muscle.
-const IMPOSSIBLE: f64 = 1e6;
+/// Residual of a refused muscle, over the noise: larger than any of a valid muscle.
+const REFUSED: f64 = 1e6;
 
 impl Search {
-    /// Where the starts are: the first as given, the others by a Latin hypercube over the ranges.
+    /// The starts: the first as given, the others from a Latin hypercube over the ranges.
     fn starts(&self, problem: &Problem) -> Vec<Vec<f64>> {
         let parameters = problem.parameters();
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
-        // 53 bits, 0 up to but not 1.
+        // 53 bits in [0, 1).
         let mut share = || (generator.next_u64() >> 11) as f64 * 2_f64.powi(-53);
         let mut starts = vec![parameters.iter().map(|p| p.start).collect::<Vec<_>>()];
         let drawn = self.starts.saturating_sub(1);
@@ -61,7 +61,7 @@ impl Search {
         starts
     }
 
-    /// The best of what the starts led to, and how many came as near to it as makes no difference.
+    /// The best solution, and the number of starts that reached it within 0.1 % of its objective.
     pub fn best(&self, problem: &Problem) -> Result<(Solution, usize), FitError> {
         let starts = self.starts(problem);
         let progress = progress::bar("fitting from starts", starts.len());
@@ -76,7 +76,7 @@ impl Search {
         progress.finish_and_clear();
         let why = solutions.iter().find_map(|solution| solution.as_ref().err().cloned());
         let mut found: Vec<Solution> = solutions.into_iter().flatten().collect();
-        // Stable, so that equals stay in the order of the starts.
+        // A stable sort keeps equal solutions in the order of the starts.
         found.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         let Some(best) = found.first().cloned() else {
             return Err(FitError::NoSolution(self.starts, why.unwrap_or_default()));
@@ -88,7 +88,7 @@ impl Search {
 
 fn descend(problem: &Problem, start: &[f64]) -> Result<Solution, String> {
     if problem.residuals(start).is_none() {
-        return Err("no muscle has the values of the start".to_owned());
+        return Err("the muscle with the start values is refused".to_owned());
     }
     let free = problem.parameters().iter().zip(start).map(|(p, &value)| p.unbounded(value));
     let descent = Descent::new(problem, DVector::from_iterator(start.len(), free));
@@ -99,14 +99,14 @@ fn descend(problem: &Problem, start: &[f64]) -> Result<Solution, String> {
         .with_stepbound(1.0)
         .with_patience(PATIENCE);
     let (end, report) = method.minimize(descent);
-    if report.objective_function.is_finite() && end.possible() {
+    if report.objective_function.is_finite() && end.is_valid() {
         Ok(Solution { values: end.values(), objective: report.objective_function })
     } else {
         Err(format!("{:?}", report.termination))
     }
 }
 
-/// One start on its way.
+/// The least-squares problem as seen by the solver.
 struct Descent<'a> {
     problem: &'a Problem,
     free: DVector<f64>,
@@ -122,7 +122,7 @@ impl<'a> Descent<'a> {
         descent
     }
 
-    fn possible(&self) -> bool {
+    fn is_valid(&self) -> bool {
         self.residuals.is_some()
     }
 
@@ -134,11 +134,11 @@ impl<'a> Descent<'a> {
         self.values_at(&self.free)
     }
 
-    /// Residuals, and departures from what is believed.
+    /// Residuals of the recordings and of the priors.
     fn at(&self, free: &DVector<f64>) -> Option<DVector<f64>> {
         let values = self.values_at(free);
         let mut residuals = self.problem.residuals(&values)?;
-        residuals.extend(self.problem.departures(&values));
+        residuals.extend(self.problem.prior_residuals(&values));
         Some(DVector::from_vec(residuals))
     }
 }
@@ -158,9 +158,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        // A step to where no muscle can be is taken back, not the end.
-        let impossible = || DVector::from_element(self.count, IMPOSSIBLE);
-        Some(self.residuals.clone().unwrap_or_else(impossible))
+        // Large residuals make the solver reject a step to a refused muscle; `None` would end it.
+        let refused = || DVector::from_element(self.count, REFUSED);
+        Some(self.residuals.clone().unwrap_or_else(refused))
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {

@@ -1,4 +1,4 @@
-//! Start of a fit: the muscle, and its file as a table that takes the fitted numbers.
+//! Starting muscle of a fit, and its file as a table to put the fitted numbers into.
 
 use super::keys::FORCE;
 use crate::coefficients;
@@ -7,24 +7,24 @@ use crate::muscles;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A muscle to start from.
+/// A starting muscle.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// The muscle.
     pub named: NamedMuscle,
     /// Its file, fibre types in order of rank as in the muscle.
     pub table: Table,
-    /// Its file gives F0 instead of mass, so F0 is kept.
+    /// Whether its file gives F0 instead of mass: F0 is then kept.
     pub keep_force: bool,
 }
 
 impl Start {
-    /// From a file, or from the name of a muscle.
+    /// Reads a file or a named muscle.
     pub fn read(path: &Path) -> Result<Self, MuscleFileError> {
         Self::parse(&muscles::text(path)?, path)
     }
 
-    /// From the text of a muscle file; `path` is for the messages.
+    /// Parses a muscle file; `path` is for error messages.
     pub fn parse(text: &str, path: &Path) -> Result<Self, MuscleFileError> {
         let named = muscle_file::parse(text, path)?;
         let mut table: Table = toml::from_str(text).map_err(|error| MuscleFileError::Parse {
@@ -39,7 +39,7 @@ impl Start {
     }
 }
 
-/// The rank of a fibre type that was accepted.
+/// The rank of a valid fibre type.
 fn rank(fiber: &Value) -> f64 {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|rank| rank as f64));
     let preset = || {
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn types_are_in_order_of_rank_in_the_table_too() {
+    fn types_of_the_table_are_sorted_by_rank() {
         let text = "name = \"m\"\nmass_g = 97.5\nfascicle_length_cm = 11\ntendon_length_cm = 2\n\
                     max_path_length_cm = 18.4\n\
                     [[fiber]]\npreset = \"paper-table-1/fast\"\nfraction = 0.4\n\

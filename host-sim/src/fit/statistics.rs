@@ -1,4 +1,4 @@
-//! Uncertainty of the parameters: linear least squares at the solution.
+//! Uncertainty of the parameters, from the problem linearised at the solution.
 //!
 //! With J the derivatives of the residuals and s² their variance, the covariance of the parameters
 //! is (JᵀJ/s² + P)⁻¹ with the precision P of the priors. Residuals of an imperfect model are
@@ -12,26 +12,26 @@ use nalgebra::DMatrix;
 const NORMAL_95: f64 = 1.96;
 /// Correlation above which two parameters trade off.
 const TRADE_OFF: f64 = 0.95;
-/// Ratio of standard error to the prior's spread above which the recordings gave no information.
+/// Ratio of standard error to the prior's spread above which the recordings count as uninformative.
 const AT_PRIOR: f64 = 0.9;
 
 /// A fitted parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Standard error, recordings and prior together; none at a bound.
+    /// Standard error from recordings and prior; `None` at a bound.
     pub standard_error: Option<f64>,
-    /// Whether it ended at one of its bounds.
+    /// Whether the value is at one of its bounds.
     pub at_bound: bool,
-    /// Whether the recordings left it at its prior.
+    /// Whether it is determined by the prior, not by the recordings.
     pub at_prior: bool,
 }
 
 impl Estimate {
-    /// Remark, if any.
+    /// Remark for tables; empty if none.
     pub fn note(&self) -> &'static str {
         match self {
             Self { at_bound: true, .. } => "at its bound",
@@ -49,9 +49,9 @@ impl Estimate {
 /// Two parameters that trade off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// Their names.
+    /// Names.
     pub names: [String; 2],
-    /// Their correlation.
+    /// Correlation.
     pub correlation: f64,
 }
 
@@ -64,12 +64,12 @@ pub struct Statistics {
     pub pairs: Vec<Pair>,
     /// Parameters that the recordings do not determine and that have no prior.
     pub undetermined: Vec<String>,
-    /// Root mean square of the residuals, in stated noise.
+    /// Root mean square of the residuals over the stated noise.
     pub noise_ratio: f64,
 }
 
-/// The statistics of a solution: `jacobian` is by each parameter in units of its range, `series`
-/// are the residuals trial by trial.
+/// Statistics of a solution. `jacobian` has the derivatives by each parameter in units of its
+/// range, `series` the residuals of each trial.
 pub fn statistics(
     parameters: &[Parameter],
     values: &[f64],
@@ -79,7 +79,7 @@ pub fn statistics(
     let count: usize = series.iter().map(Vec::len).sum();
     let squares: f64 = series.iter().flatten().map(|r| r * r).sum();
     let freedom = count.saturating_sub(parameters.len()).max(1) as f64;
-    // At least rounding, which remains of a perfect fit.
+    // Lower bound for a perfect fit: rounding errors.
     let variance = (squares / freedom).max(1e-12) * inflation(series);
     let at_bound: Vec<bool> =
         parameters.iter().zip(values).map(|(p, &value)| p.is_at_bound(value)).collect();
@@ -96,14 +96,14 @@ pub fn statistics(
             informed[(place, place)] += (range(index) / prior.spread).powi(2);
         }
     }
-    let together = covariance(&informed);
+    let covariance = covariance(&informed);
     let mut estimates = Vec::new();
     let mut undetermined = Vec::new();
     for (index, parameter) in parameters.iter().enumerate() {
         let place = free.iter().position(|&free| free == index);
-        let error = place.map(|place| together[(place, place)].sqrt() * range(index));
+        let error = place.map(|place| covariance[(place, place)].sqrt() * range(index));
         let spread = parameter.prior.map(|prior| prior.spread);
-        // An interval as wide as the range of starts: undetermined.
+        // An interval as wide as the range of starts counts as undetermined.
         let wide = error.is_some_and(|error| 2.0 * NORMAL_95 * error >= range(index));
         if spread.is_none() && wide {
             undetermined.push(parameter.name.clone());
@@ -119,8 +119,8 @@ pub fn statistics(
     let mut pairs = Vec::new();
     for (second, &j) in free.iter().enumerate() {
         for (first, &i) in free[..second].iter().enumerate() {
-            let scale = (together[(first, first)] * together[(second, second)]).sqrt();
-            let correlation = together[(first, second)] / scale;
+            let scale = (covariance[(first, first)] * covariance[(second, second)]).sqrt();
+            let correlation = covariance[(first, second)] / scale;
             if correlation.abs() > TRADE_OFF {
                 let names = [parameters[i].name.clone(), parameters[j].name.clone()];
                 pairs.push(Pair { names, correlation });
@@ -161,10 +161,10 @@ mod tests {
         Parameter { name, place, start: 0.0, bounds: (-5.0, 5.0), prior }
     }
 
-    /// A straight line a + b t through readings with residuals of ±1, 0.1 apart: its textbook
-    /// errors.
+    /// A straight line a + b t through readings 0.1 apart with residuals of ±1, against the
+    /// textbook formulas.
     #[test]
-    fn a_line_has_the_errors_of_a_line() {
+    fn a_straight_line_has_the_textbook_standard_errors() {
         let times: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.1).collect();
         let residuals: Vec<f64> = (0..1000).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let jacobian = DMatrix::from_fn(1000, 2, |row, column| {
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_recordings_do_not_tell_is_named_or_left_at_its_prior() {
+    fn undetermined_parameters_are_named_or_left_at_their_prior() {
         // The recordings determine only a + b.
         let jacobian = DMatrix::from_element(100, 2, 10.0);
         let residuals: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
@@ -201,14 +201,15 @@ mod tests {
         let one = [parameter("a", None), parameter("b", Some(prior))];
         let found = statistics(&one, &[0.0, 0.0], &jacobian, &series);
         assert!(found.estimates[1].at_prior, "{:?}", found.estimates);
-        assert!(found.undetermined.is_empty(), "what is believed of b tells a");
+        assert!(found.undetermined.is_empty(), "the prior of b determines a");
     }
 
     #[test]
-    fn residuals_that_go_together_count_less() {
-        let apart = inflation(&[(0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect()]);
+    fn autocorrelated_residuals_inflate_the_variance() {
+        let alternating =
+            inflation(&[(0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect()]);
         let slow: Vec<f64> = (0..100).map(|i| (f64::from(i) * 0.1).sin()).collect();
-        assert_eq!(apart, 1.0);
+        assert_eq!(alternating, 1.0);
         assert!(inflation(&[slow]) > 100.0);
     }
 }

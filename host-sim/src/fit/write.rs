@@ -1,5 +1,4 @@
-//! The fitted muscle as a file that every command takes: the start's, with the fitted numbers in
-//! their places.
+//! Writes the fitted muscle as a muscle file: the starting file with the fitted numbers replaced.
 
 use super::keys::{EXCITATION_TIMES, FORCE, Key};
 use super::outcome::Fit;
@@ -9,14 +8,14 @@ use crate::reference::Muscle;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// The text of the fitted muscle's file: what was fitted, from what (`origin`) and how well, in
-/// comments above the muscle.
+/// The text of the fitted muscle's file. Comments at the top state the sources (`origin`), the
+/// parameters with their uncertainty and the errors.
 pub fn fitted_file(start: &Table, fit: &Fit, origin: &str) -> String {
     let mut table = start.clone();
     for estimate in &fit.estimates {
         put(&mut table, &estimate.name, estimate.value, &fit.muscle);
     }
-    // All of it, fitted or not: what was fitted goes with the rest.
+    // The whole curve, because its values belong together.
     if let Some(values) = fit.curve {
         let numbers = curve::NAMES.iter().zip(values);
         let curve = numbers.map(|(name, value)| ((*name).to_owned(), Value::Float(value)));
@@ -69,12 +68,12 @@ fn comments(fit: &Fit, origin: &str) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// Six digits: more than any recording tells.
+/// Six significant digits: more than any recording determines.
 fn digits(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
-/// Puts a fitted number in its place in a file; what is no number of a muscle has none.
+/// Sets a fitted number in the file; parameters that are not numbers of the muscle are skipped.
 fn put(table: &mut Table, name: &str, value: f64, muscle: &Muscle) {
     let Some(key) = Key::named(name) else { return };
     match key {
@@ -103,7 +102,7 @@ fn put(table: &mut Table, name: &str, value: f64, muscle: &Muscle) {
     }
 }
 
-/// Puts numbers of all fibre types of the muscle in their places.
+/// Sets numbers of all fibre types of the muscle.
 fn every_fiber(table: &mut Table, muscle: &Muscle, names: &[&str]) {
     for index in 0..muscle.fibers.len() {
         for name in names {
