@@ -261,15 +261,15 @@ impl Rest<'_> {
         let muscle = vm::Muscle::<S, R, N>::build_with_units(&params, units, step)?;
         let state = muscle.rest(S::path_length(self.path_length))?;
         let fatigue = self.muscle.fatigue.as_ref().map(model_muscle::fatigue_params);
-        let tiring = fatigue
+        let fatiguing = fatigue
             .map(|params| {
                 let fatigue = vm::Fatigue::<S>::build(&params, step)?;
                 let stimulated = mode == Mode::Fes;
-                Ok::<_, RunError>(Tiring { fatigue, state: fatigue.rested(), stimulated })
+                Ok::<_, RunError>(Fatiguing { fatigue, state: fatigue.rested(), stimulated })
             })
             .transpose()?;
         let f0 = params.max_isometric_force();
-        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, tiring, f0 }))
+        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, fatiguing, f0 }))
     }
 }
 
@@ -293,24 +293,24 @@ impl Running for Simulation {
 struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
     muscle: Rc<vm::Muscle<S, R, N>>,
     state: vm::State<S, R, N>,
-    tiring: Option<Tiring<S>>,
+    fatiguing: Option<Fatiguing<S>>,
     /// N.
     f0: f64,
 }
 
-/// Fatigue of a muscle.
+/// Fatigue of a muscle with its state.
 #[derive(Clone, Copy)]
-struct Tiring<S: vm::Scalar> {
+struct Fatiguing<S: vm::Scalar> {
     fatigue: vm::Fatigue<S>,
     state: vm::FatigueState<S>,
     /// Under FES: depends on the stimulation frequency.
     stimulated: bool,
 }
 
-/// Natural firing fatigues like stimulation at this frequency, pps.
+/// Stimulation frequency that fatigues like natural firing, pps.
 const NATURAL: f64 = 100.0;
 
-impl<S: vm::Scalar> Tiring<S> {
+impl<S: vm::Scalar> Fatiguing<S> {
     fn advance(&mut self, input: vm::Input<S>) -> S {
         let natural = S::quantity(NATURAL);
         let frequency = if self.stimulated { input.stimulation_frequency } else { natural };
@@ -321,8 +321,8 @@ impl<S: vm::Scalar> Tiring<S> {
 impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Stepped<S, R, N> {
     fn row(&self) -> Row {
         let output = self.muscle.observe(&self.state);
-        let output = match &self.tiring {
-            Some(tiring) => output.fatigued(tiring.state.fitness()),
+        let output = match &self.fatiguing {
+            Some(fatiguing) => output.fatigued(fatiguing.state.fitness()),
             None => output,
         };
         row(output, self.f0)
@@ -331,8 +331,8 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
     fn step(&mut self, input: Input) -> Result<Row, RunError> {
         let input = scaled(&input);
         let output = self.muscle.step(&mut self.state, input);
-        let output = match &mut self.tiring {
-            Some(tiring) => output.fatigued(tiring.advance(input)),
+        let output = match &mut self.fatiguing {
+            Some(fatiguing) => output.fatigued(fatiguing.advance(input)),
             None => output,
         };
         Ok(row(output, self.f0))
@@ -343,8 +343,8 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
     }
 
     fn watch(&self, watch: &mut dyn FnMut(u64)) {
-        let tiring = self.tiring.iter().flat_map(|tiring| tiring.state.words());
-        self.state.words().chain(tiring).for_each(|word| watch(word.into()));
+        let fatiguing = self.fatiguing.iter().flat_map(|fatiguing| fatiguing.state.words());
+        self.state.words().chain(fatiguing).for_each(|word| watch(word.into()));
     }
 }
 

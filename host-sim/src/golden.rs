@@ -1,5 +1,5 @@
-//! Golden bits: a checksum of the state of every scenario in every tick. Changing one needs a
-//! reason (`cargo vm golden --bless --reason`).
+//! Golden bits: one checksum per scenario and arithmetic over the state of all ticks. Changing one
+//! needs a reason (`cargo vm golden --bless --reason`).
 
 use crate::engine::{self, Arithmetic, RunError};
 use crate::scenario;

@@ -91,7 +91,7 @@ const FIGURES: [(&str, &str); 6] = [
     ("static_force_start.svg", "Figure 4: where recruitment starts"),
     ("sinusoid_responses.svg", "Figure 5: responses to sinusoids"),
     ("sinusoids.svg", "Figures 5 and 6: sinusoids of all frequencies"),
-    ("computation.svg", "Figure 7: what motor units cost"),
+    ("computation.svg", "Figure 7: cost of motor units"),
 ];
 
 /// Makes the page; `cycles` is the output of `vm cycles --json`.
@@ -132,11 +132,11 @@ fn read_cycles(path: &Path) -> Result<Vec<cycles::Row>, ReportError> {
 
 /// The scenario with the largest error at 1 kHz.
 fn worst<'a>(rows: &'a [Row], arithmetic: &str, ringing: bool) -> Option<&'a Row> {
-    let of_interest = rows.iter().filter(|row| {
+    let relevant = rows.iter().filter(|row| {
         (row.arithmetic == arithmetic && !row.scenario.contains('@'))
             && (ringing || !tolerance::rings(&row.scenario))
     });
-    of_interest.max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0))
+    relevant.max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0))
 }
 
 /// Largest error in an arithmetic, against the promise for such scenarios.
@@ -175,12 +175,12 @@ fn facts(
     }
     facts.push(Fact {
         value: if differences.is_empty() { "same" } else { "changed" }.to_owned(),
-        what: "bits as committed".to_owned(),
+        what: "golden bits".to_owned(),
         good: differences.is_empty(),
     });
     facts.push(Fact {
         value: format!("{agreed} of {}", claims.len()),
-        what: "claims of the paper found again".to_owned(),
+        what: "claims of the paper reproduced".to_owned(),
         good: agreed == claims.len(),
     });
     for case in ["continuous-f32", "continuous-fixed"] {
@@ -195,7 +195,7 @@ fn facts(
         let budget = row.budget.map_or(String::new(), |budget| format!(" (budget {budget})"));
         facts.push(Fact {
             value: row.cycles_pess_max.to_string(),
-            what: format!("cycles at most for a tick in f32 on a Cortex-M4F{budget}"),
+            what: format!("cycles in the most expensive tick in f32 on a Cortex-M4F{budget}"),
             good: row.pass,
         });
     }
@@ -238,7 +238,7 @@ fn plot(traces: &Traces) -> Plot {
             |(row, value): (usize, f64)| -> Point { (row as f64 * traces.time_step, value) };
         Line::new(name, values.enumerate().map(over_time))
     };
-    // Truncation error below, with rounding on top.
+    // Truncation error drawn first, rounding on top of it.
     let errors = traces.computed.iter().rev().map(|(name, forces)| {
         let pairs = forces.iter().zip(&traces.reference);
         let mut errors = pairs.map(|(force, reference)| 100.0 * (force - reference) / traces.f0);

@@ -1,4 +1,4 @@
-//! Scenarios for comparing the arithmetics: the authors' traces, and harder inputs of our own.
+//! Scenarios for comparing the arithmetics: the authors' traces, and more demanding inputs.
 
 use crate::coefficients;
 use crate::muscle_file;
@@ -11,7 +11,7 @@ use vm_nostd::Status;
 /// A muscle, a mode and inputs.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// Name, with the time step where it is not 1 ms.
+    /// Name, with the time step if that is not 1 ms.
     pub name: String,
     /// The muscle.
     pub muscle: Muscle,
@@ -97,7 +97,7 @@ struct Vector {
     mode: Mode,
     /// Motor units per type, in a discrete mode.
     units: usize,
-    /// The muscle's file, if it is not the paper's muscle.
+    /// Muscle file; `None` for the paper's muscle.
     muscle: Option<&'static str>,
     text: &'static str,
 }
@@ -155,7 +155,7 @@ pub fn all() -> Vec<Scenario> {
     let effective: Vec<Scenario> =
         discrete.map(|scenario| Scenario { mode, vector: None, ..scenario.clone() }).collect();
     scenarios.extend(effective);
-    let of_vectors = scenarios.len();
+    let vector_count = scenarios.len();
     for mode in [Mode::Continuous, Mode::Fes] {
         for hz in FREQUENCIES {
             scenarios.push(generated(
@@ -210,7 +210,7 @@ pub fn all() -> Vec<Scenario> {
             [0.9 * step, 0.074 + 0.008 * libm::cos(TAU * 2.0 * t) * smooth(t / 0.4), 40.0]
         }));
     }
-    let vectors = &scenarios[..of_vectors];
+    let vectors = &scenarios[..vector_count];
     let mut others: Vec<Scenario> = scenarios.iter().map(|s| resampled(s, "0.5ms", 1, 2)).collect();
     others.extend(vectors.iter().map(|s| resampled(s, "0.1ms", 1, 10)));
     others.extend(scenarios.iter().map(|s| resampled(s, "2ms", 2, 1)));

@@ -12,8 +12,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// The authors' program starts from an estimate of the resting length; its traces are compared from
-/// this time on, s.
+/// Traces of the authors' program are compared after this time, s: it starts from an estimate of
+/// the resting length.
 const VECTOR_SETTLED: f64 = 0.1;
 /// Largest ratio of a tolerance to the measured error.
 const LOOSEST: f64 = 2.0;
@@ -21,7 +21,7 @@ const LOOSEST: f64 = 2.0;
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Scenario, with its time step where that is not 1 ms.
+    /// Scenario, with its time step if that is not 1 ms.
     pub scenario: String,
     /// Recruitment mode.
     pub mode: String,
@@ -41,12 +41,12 @@ pub struct Row {
     pub arithmetic_pct_f0: Option<f64>,
     /// Tolerance of the largest error, % of F0.
     pub tolerance_pct_f0: f64,
-    /// Time that the run took, s.
+    /// Run time, s.
     #[serde(skip)]
     pub seconds: f64,
     /// Whether the row passes.
     pub pass: bool,
-    /// Reason if it does not.
+    /// Why it does not pass.
     #[serde(skip)]
     pub problem: String,
     /// Cause of the error.
@@ -59,15 +59,15 @@ pub struct Row {
 pub struct Report {
     /// One row per comparison.
     pub rows: Vec<Row>,
-    /// Tolerances that no row uses.
+    /// Stale tolerances: no row uses them.
     pub unused: Vec<String>,
-    /// The forces that were compared, of the scenarios at 1 ms.
+    /// Compared forces of the scenarios at 1 ms.
     pub traces: Vec<Traces>,
-    /// Time that all comparisons took, s.
+    /// Total run time, s.
     pub seconds: f64,
 }
 
-/// The forces of a scenario, N, a value per row of its inputs.
+/// Forces of a scenario, N, one value per row of its inputs.
 #[derive(Clone, Debug)]
 pub struct Traces {
     /// Its name.
@@ -80,9 +80,9 @@ pub struct Traces {
     pub f0: f64,
     /// The inputs.
     pub inputs: Vec<Input>,
-    /// Of the reference.
+    /// Force of the reference.
     pub reference: Vec<f64>,
-    /// Of every arithmetic, by its name.
+    /// Force of every arithmetic, with its name.
     pub computed: Vec<(&'static str, Vec<f64>)>,
 }
 
@@ -98,8 +98,8 @@ pub fn verify() -> Result<Report, RunError> {
     verify_class(Class::Standard)
 }
 
-/// Runs every comparison in an accuracy class. Only the standard class has tolerances row by row;
-/// the others are held to what they promise.
+/// Runs every comparison in an accuracy class. Only the standard class has a tolerance per row; the
+/// others are checked against the promised limits only.
 pub fn verify_class(class: Class) -> Result<Report, RunError> {
     let scenarios = scenario::all();
     let table = (class == Class::Standard).then(tolerance::table);
@@ -164,19 +164,19 @@ fn compare(
         rows.push(Row { seconds, ..row });
     }
     let (scheme, scheme_flags, scheme_seconds) = run(Arithmetic::F64)?;
-    let mut forces_of = Vec::new();
+    let mut computed_forces = Vec::new();
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
         let (computed, flags, seconds) = run(arithmetic)?;
         let error = ForceError::between(&computed, &reference, f0);
         let row = judge(arithmetic, "reference", error, (flags, scenario.flags));
         let arithmetic_pct_f0 = Some(ForceError::between(&computed, &scheme, f0).max);
         rows.push(Row { arithmetic_pct_f0, seconds, ..row });
-        forces_of.push((arithmetic.name(), computed));
+        computed_forces.push((arithmetic.name(), computed));
     }
     let error = ForceError::between(&scheme, &reference, f0);
     let row = judge(Arithmetic::F64, "reference", error, (scheme_flags, scenario.flags));
     rows.push(Row { seconds: scheme_seconds, ..row });
-    forces_of.push((Arithmetic::F64.name(), scheme));
+    computed_forces.push((Arithmetic::F64.name(), scheme));
     let traces = Traces {
         scenario: scenario.name.clone(),
         mode: engine::mode_name(scenario.mode).to_owned(),
@@ -184,7 +184,7 @@ fn compare(
         f0,
         inputs: scenario.trace.inputs.clone(),
         reference,
-        computed: forces_of,
+        computed: computed_forces,
     };
     Ok((rows, traces))
 }
@@ -216,7 +216,7 @@ fn judge(
             limit(
                 entry.max,
                 LOOSEST * error.max,
-                "tolerance, against twice measured,",
+                "stale tolerance: limit over twice the error:",
                 &mut problems,
             );
             if let Some(rms) = entry.rms {
@@ -224,7 +224,7 @@ fn judge(
                 limit(
                     rms,
                     LOOSEST * error.rms,
-                    "rms tolerance, against twice measured,",
+                    "stale rms tolerance: limit over twice the error:",
                     &mut problems,
                 );
             }
@@ -269,7 +269,7 @@ mod tests {
         assert!(passes(0.04, Some(0.05)));
         assert!(!passes(0.051, Some(0.05)), "an error beyond the tolerance");
         assert!(!passes(0.024, Some(0.05)), "a tolerance looser than twice the error");
-        assert!(!passes(0.11, Some(0.12)), "beyond what is promised, whatever the table says");
+        assert!(!passes(0.11, Some(0.12)), "beyond the promised limit");
         assert!(!passes(0.04, None), "no entry");
         assert!(!passes(f64::NAN, Some(0.05)), "not a number");
     }

@@ -132,7 +132,7 @@ fn cards(page: &str) {
     assert!(others.contains("limit 0.2 %"), "{others}");
     card("largest error in fixed at 1 kHz, all scenarios");
     // A claim that does not hold is seen in its card.
-    let claims = card("claims of the paper found again");
+    let claims = card("claims of the paper reproduced");
     let (found, all) =
         claims.split(['>', '<']).find_map(|text| text.split_once(" of ")).expect("a count");
     assert_eq!(claims.contains("bad"), found != all, "{claims}");

@@ -31,7 +31,7 @@ pub enum HilError {
     #[error(transparent)]
     Target(#[from] crate::target::TargetError),
     /// The line failed.
-    #[error("the line to the device: {0}")]
+    #[error("serial line: {0}")]
     Line(#[from] std::io::Error),
     /// No answer.
     #[error("no answer to {request} within {PATIENCE:?}")]
@@ -60,8 +60,8 @@ pub enum HilError {
         /// This program's version.
         host: u8,
     },
-    /// The frame was not acted upon.
-    #[error("the device does not act upon {request}: {}", why(*error))]
+    /// The device ignored the frame.
+    #[error("the device ignored {request}: {}", why(*error))]
     NotActedUpon {
         /// The request.
         request: &'static str,
@@ -69,7 +69,7 @@ pub enum HilError {
         error: LinkError,
     },
     /// The answer is of another kind.
-    #[error("unexpected kind of answer to {request}")]
+    #[error("answer of an unexpected kind to {request}")]
     OtherAnswer {
         /// The request.
         request: &'static str,
@@ -94,12 +94,13 @@ pub enum HilError {
 
 /// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// A request is sent again after this silence: longer than the device takes to store a muscle.
+/// A request is repeated after this time without an answer: longer than the device takes to store
+/// a muscle.
 const AGAIN: Duration = Duration::from_millis(MOST_STORE_MS as u64 + 1_000);
 // If flash hangs, the watchdog restarts the device, which then reports that it has no session.
 const _: () = assert!(PATIENCE.as_millis() > DISARMED.most_ms() as u128 + AGAIN.as_millis());
 
-/// The same for a greeting.
+/// Repetition time of the greeting.
 const GREET_AGAIN: Duration = Duration::from_millis(300);
 
 /// Sends requests to a device, one at a time.
@@ -242,7 +243,7 @@ impl<L: Line> Client<L> {
             .map_or(HilError::Silence { request: "hello" }, |error| not_acted_upon("hello", error)))
     }
 
-    /// The same for a request whose answer is `Done`.
+    /// Sends a request whose answer is `Done`.
     pub fn order(&mut self, request: &Request) -> Result<(), HilError> {
         match self.ask(request)? {
             Answer::Done => Ok(()),
@@ -330,7 +331,7 @@ fn reason(refusal: &Refusal<'_>) -> String {
             format!("{field} = {value}: must be {least} to {most}")
         }
         Refusal::Armed => "stimulation is armed".to_owned(),
-        Refusal::Empty => "no muscle is at that place".to_owned(),
+        Refusal::Empty => "no muscle in this slot".to_owned(),
         Refusal::NoRoom { room } => format!("room for {room} rows"),
         Refusal::NotStored(NotStored::Unknown) => {
             "flash failed twice: the next boot restores these muscles or those stored before"

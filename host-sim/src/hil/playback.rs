@@ -44,7 +44,7 @@ pub fn play<L: Line>(
     let inputs: Vec<[RowInputs; 2]> = trace.inputs[1..]
         .iter()
         .map(|input| {
-            // Rounded as in the host's own run.
+            // Rounded as in the host's run.
             let first = RowInputs {
                 activation: input.activation as f32,
                 path_length: input.path_length as f32,
@@ -64,7 +64,7 @@ pub fn play<L: Line>(
         }
         progress(rows.len() - 1);
     }
-    let words = compare_words(client, host.as_ref(), "in the end")?;
+    let words = compare_words(client, host.as_ref(), "at the end")?;
     Ok(Played { rows, words, report: report(client)? })
 }
 
@@ -123,7 +123,7 @@ fn send_some<L: Line>(
 /// Checks that a row of the device is the next one and has the host's bits.
 fn compare(traced: &Traced, row: usize, expected: &engine::Row) -> Result<engine::Row, HilError> {
     if traced.row as usize != row {
-        return Err(HilError::Differs(format!("row {} came instead of {row}", traced.row)));
+        return Err(HilError::Differs(format!("received row {}, expected {row}", traced.row)));
     }
     let output = traced.outputs[0];
     let sample = Sample {

@@ -39,8 +39,8 @@ pub fn force_velocity(t: &FiberType, l: f64, v: f64) -> f64 {
     }
 }
 
-/// Af = 1 - exp(-(Y S f / (af n_f))^n_f), n_f = nf0 + nf1 (1/L - 1); with effective length, L is
-/// that.
+/// Af = 1 - exp(-(Y S f / (af n_f))^n_f), n_f = nf0 + nf1 (1/L - 1); L is the effective length in
+/// modes that have one.
 pub fn activation_frequency(t: &FiberType, f: f64, l: f64, y: f64, s: f64) -> f64 {
     let n_f = t.nf0 + t.nf1 * (1.0 / l - 1.0);
     // A stage of the integrator may give f slightly below 0, where the power is undefined.
@@ -67,6 +67,6 @@ pub fn sag_rate(t: &FiberType, s: f64, sagging: bool) -> f64 {
 
 /// Effective length: dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), 1/s.
 pub fn effective_length_rate(t: &FiberType, l: f64, l_eff: f64, af: f64) -> f64 {
-    // At Af = 1, L_eff would equal L at once; bounded so that the integrator can follow.
+    // At Af = 1 the rate is infinite; bounded for the integrator.
     (l - l_eff).powi(3) / (t.TL * (1.0 - af).max(1e-6))
 }

@@ -1,4 +1,4 @@
-//! A muscle in the paper's symbols and units of choice (seconds, metres, kilograms).
+//! A muscle in the paper's symbols and SI units.
 
 use super::fatigue::Fatigue;
 
@@ -112,7 +112,7 @@ pub struct Muscle {
     pub elements: Elements,
     /// Fibre types, in order of rank.
     pub fibers: Vec<Fiber>,
-    /// How it tires, if it does.
+    /// Fatigue, if modelled.
     pub fatigue: Option<Fatigue>,
 }
 

@@ -1,4 +1,4 @@
-//! Pennation, which Virtual Muscle does not model: its effect on steady force.
+//! Effect of pennation, which Virtual Muscle does not model, on steady force.
 //!
 //! A muscle of constant thickness (Zajac, Crit. Rev. Biomed. Eng. 17 (1989) 359-411): L sin α is
 //! constant, so that sin α = sin α0/L with the angle α0 at L_ce0; the tendon carries cos α of the
@@ -41,7 +41,7 @@ impl Pennation {
             let passive = element::parallel_elastic(e, l, l_max, 0.0) + element::compression(e, l);
             self.cosine(l) * (filaments + passive).max(0.0)
         };
-        // From cos α = 0 to a tendon of no length.
+        // Bracket: from cos α = 0 to a tendon of zero length.
         let (mut low, mut high) = (self.sine.max(1e-3), path / muscle.L_ce0 + 1.0);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);

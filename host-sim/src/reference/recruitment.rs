@@ -7,11 +7,11 @@ use super::muscle::Muscle;
 pub enum Mode {
     /// Natural discrete recruitment: motor units one by one.
     Discrete,
-    /// The same with an effective length of each unit (VM 3.x).
+    /// The same with the effective length of each unit (VM 3.x).
     DiscreteEffectiveLength,
     /// Natural continuous recruitment: one lumped unit per type.
     Continuous,
-    /// Intramuscular FES: every type recruited alike, at one stimulation frequency.
+    /// Intramuscular FES: all types recruited in proportion, at one stimulation frequency.
     Fes,
 }
 

@@ -11,11 +11,11 @@ use ode_solvers::{DVector, Dopri5};
 /// Inputs of a tick that ends at the sample's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
-    /// U, 0..1, in force during the tick.
+    /// U, 0..1, constant during the tick.
     pub activation: f64,
     /// L_mt at the end of the tick, m; linear from the previous tick's.
     pub path_length: f64,
-    /// f_stim, pps, in force during the tick (FES).
+    /// f_stim, pps, constant during the tick (FES).
     pub stimulation_frequency: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct SolverError {
 
 /// Tolerance per step, relative and absolute (in L_ce0, f0.5, ...).
 const TOLERANCE: f64 = 1e-9;
-/// Most steps of a tick.
+/// Maximum number of steps per tick.
 const MOST_STEPS: u32 = 200_000;
 
 // Layout of the state vector: L, V, U_eff, then Y of each type, then four per unit.
@@ -159,7 +159,7 @@ impl Simulation {
         self.tick += 1;
         stepper.integrate().map_err(|source| SolverError { tick: self.tick, source })?;
         let times = stepper.x_out();
-        // The last step is cut to end with the tick; the next tick starts with the step before.
+        // The last step is cut to end with the tick; the next tick starts with the one before.
         self.first_step = match times.as_slice() {
             [.., a, b, _] => b - a,
             _ => 0.0,
@@ -169,7 +169,7 @@ impl Simulation {
         }
         self.path_length = input.path_length;
         if let Some(fatigue) = &self.muscle.fatigue {
-            // Natural firing fatigues like the fastest stimulation.
+            // Natural firing counts as the highest stimulation frequency.
             let frequency =
                 if self.mode == Mode::Fes { input.stimulation_frequency } else { f64::INFINITY };
             self.fitness = fatigue.fitness(self.fitness, self.time_step, u, frequency);
@@ -218,8 +218,8 @@ impl System<f64, DVector<f64>> for Tick<'_> {
         let (l, v, u_eff) = (y[L], y[V], y[U_EFF]);
         let weights = recruitment::weights(self.units, u_eff);
         let first_unit = FIRST_TYPE + m.fibers.len();
-        let mut force_of_filaments = 0.0;
-        let mut force_of_compression = 0.0;
+        let mut filament_force = 0.0;
+        let mut compression_force = 0.0;
         for (i, fiber) in m.fibers.iter().enumerate() {
             dy[FIRST_TYPE + i] = element::yielding_rate(&fiber.fiber_type, y[FIRST_TYPE + i], v);
         }
@@ -259,14 +259,14 @@ impl System<f64, DVector<f64>> for Tick<'_> {
                 }
                 _ => 0.0,
             };
-            force_of_filaments +=
+            filament_force +=
                 weight * af * element::force_length(t, l) * element::force_velocity(t, l, v);
-            force_of_compression += compression_weight * af * element::compression(e, l);
+            compression_force += compression_weight * af * element::compression(e, l);
         }
-        let passive = element::parallel_elastic(e, l, self.l_max, v) + force_of_compression;
+        let passive = element::parallel_elastic(e, l, self.l_max, v) + compression_force;
         let contractile = match self.mode {
-            Mode::Fes => passive.max(0.0) + force_of_filaments,
-            _ => passive + force_of_filaments,
+            Mode::Fes => passive.max(0.0) + filament_force,
+            _ => passive + filament_force,
         }
         .max(0.0);
         let path = self.path_start + self.path_rate * time;

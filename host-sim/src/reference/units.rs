@@ -1,20 +1,20 @@
-//! How the cross section of a fibre type is divided among its motor units.
+//! Division of a fibre type's cross section among its motor units.
 
 /// A rule for the sizes of the units, in order of recruitment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnitSizes {
-    /// The authors' own: the j-th unit in proportion to rank + j.
+    /// The authors' default: the j-th unit in proportion to rank + j.
     Default,
-    /// All alike.
+    /// All equal.
     Equal,
-    /// Each larger than the one before by this share of it.
+    /// Each larger than the one before by this fraction.
     Geometric(f64),
-    /// As given, relative to each other.
+    /// Given relative sizes.
     Listed(Vec<f64>),
 }
 
 impl UnitSizes {
-    /// Shares of `count` units of a type of a rank in its cross section; they add to 1.
+    /// Shares of `count` units in the cross section of a type; they add to 1.
     pub fn shares(&self, rank: u8, count: usize) -> Vec<f64> {
         let relative: Vec<f64> = match self {
             Self::Default => (1..=count).map(|j| f64::from(rank) + j as f64).collect(),
