@@ -236,7 +236,7 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
 }
 
 fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
-    // Before all is measured, and not after.
+    // Check the paths before the measurements, which take minutes.
     check_ending("--out", &args.out, "HTML", &["html", "htm"])?;
     trace::check_folder(&args.out)?;
     if let Some(cycles) = &args.cycles
@@ -252,22 +252,14 @@ fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
 
 fn compare_readme(args: &ReadmeArgs) -> Result<bool, Box<dyn Error>> {
     let mut all_current = true;
-    let mut stale = |file: &str| {
-        complain(&format!("{file} is not what is measured: cargo vm readme --write"));
-        all_current = false;
-    };
-    for (place, table) in readme::tables(&crate::verify::verify()?)? {
+    let tables = readme::tables(&crate::verify::verify()?)?;
+    for (place, generated) in tables.into_iter().chain([(readme::PICTURE, readme::picture()?)]) {
         if args.write {
-            place.write(&table)?;
-        } else if !place.is_current(&table)? {
-            stale(place.file());
+            place.write(&generated)?;
+        } else if !place.is_current(&generated)? {
+            complain(&format!("{} has drifted: cargo vm readme --write", place.file()));
+            all_current = false;
         }
-    }
-    let picture = readme::picture()?;
-    if args.write {
-        readme::write_picture(&picture)?;
-    } else if !readme::picture_is_current(&picture)? {
-        stale(readme::PICTURE);
     }
     Ok(all_current)
 }

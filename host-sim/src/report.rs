@@ -111,7 +111,7 @@ pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
     let page = Page {
         provenance: Provenance::now(),
         facts: facts(&report.rows, &claims, &differences, &cycles)?,
-        accuracy: accuracy(&report.rows, &report.traces),
+        accuracy: accuracy(&report),
         rows: &report.rows,
         errors: report.traces.iter().map(plot).collect(),
         figures,
@@ -133,7 +133,7 @@ fn read_cycles(path: &Path) -> Result<Vec<cycles::Row>, ReportError> {
 /// The scenario with the largest error at 1 kHz.
 fn worst<'a>(rows: &'a [Row], arithmetic: &str, ringing: bool) -> Option<&'a Row> {
     let relevant = rows.iter().filter(|row| {
-        (row.arithmetic == arithmetic && !row.scenario.contains('@'))
+        (row.arithmetic == arithmetic && row.is_at_1_ms())
             && (ringing || !tolerance::rings(&row.scenario))
     });
     relevant.max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0))
@@ -203,14 +203,9 @@ fn facts(
 }
 
 /// A line per scenario at 1 ms.
-fn accuracy<'a>(rows: &'a [Row], traces: &'a [Traces]) -> Vec<Accuracy<'a>> {
+fn accuracy<'a>(report: &'a verify::Report) -> Vec<Accuracy<'a>> {
     let line = |traces: &'a Traces| {
-        let of = |arithmetic: &str| {
-            rows.iter().find(|row| {
-                (row.scenario == traces.scenario && row.mode == traces.mode)
-                    && row.arithmetic == arithmetic
-            })
-        };
+        let of = |arithmetic: &str| report.row(&traces.scenario, &traces.mode, arithmetic);
         let cell = |arithmetic: &str, value: fn(&Row) -> f64| {
             of(arithmetic).map_or("-".to_owned(), |row| format!("{:.4}", value(row)))
         };
@@ -228,7 +223,7 @@ fn accuracy<'a>(rows: &'a [Row], traces: &'a [Traces]) -> Vec<Accuracy<'a>> {
             ],
         }
     };
-    traces.iter().map(line).collect()
+    report.traces.iter().map(line).collect()
 }
 
 /// Inputs, force and errors of a scenario over time.

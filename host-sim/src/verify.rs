@@ -86,7 +86,21 @@ pub struct Traces {
     pub computed: Vec<(&'static str, Vec<f64>)>,
 }
 
+impl Row {
+    /// Whether the scenario runs at 1 ms.
+    pub fn is_at_1_ms(&self) -> bool {
+        !self.scenario.contains('@')
+    }
+}
+
 impl Report {
+    /// The row of a scenario, mode and arithmetic.
+    pub fn row(&self, scenario: &str, mode: &str, arithmetic: &str) -> Option<&Row> {
+        self.rows.iter().find(|row| {
+            row.scenario == scenario && row.mode == mode && row.arithmetic == arithmetic
+        })
+    }
+
     /// Whether every row passed and every entry was used.
     pub fn passed(&self) -> bool {
         !self.rows.is_empty() && self.unused.is_empty() && self.rows.iter().all(|row| row.pass)

@@ -114,8 +114,8 @@ fn links_and_headings_are_read_as_browsers_do() {
 #[test]
 fn the_picture_is_what_the_model_computes() {
     let picture = readme::picture().expect("a picture");
-    let current = readme::picture_is_current(&picture).expect("a picture in the repository");
-    assert!(current, "{} has drifted: cargo vm readme --write", readme::PICTURE);
+    let current = readme::PICTURE.is_current(&picture).expect("a picture in the repository");
+    assert!(current, "{} has drifted: cargo vm readme --write", readme::PICTURE.file());
 }
 
 /// Compiled with every warning as an error, linked and run; its force is positive.

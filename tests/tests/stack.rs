@@ -26,7 +26,7 @@ fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
     let report = stack::report(&image, &description()).expect("a report");
     assert_eq!(report.problems, Vec::<String>::new());
     let current = readme::STACK.is_current(&readme::stack(&report)).expect("a README");
-    assert!(current, "the firmware's README is not what is computed: cargo vm stack --write");
+    assert!(current, "firmware/README.md has drifted: cargo vm stack --write");
 }
 
 /// A change of a description and the expected problem.

@@ -139,11 +139,11 @@ fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     failed.iter().for_each(|row| complain(&format!("{}: {}", row.case, row.problem)));
     let current = readme::CYCLES.is_current(&readme::cycles(&rows))?;
     if !current {
-        complain("the README's tables are not what is measured: cargo vm cycles --write");
+        complain("host-sim/docs/cycles.md has drifted: cargo vm cycles --write");
     }
     let counted = UnitCost::counted()? == costs;
     if !counted {
-        complain("data/computation.csv is not what is measured: cargo vm cycles --write");
+        complain("data/computation.csv has drifted: cargo vm cycles --write");
     }
     Ok(failed.is_empty() && current && counted)
 }

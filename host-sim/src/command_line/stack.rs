@@ -55,7 +55,7 @@ pub fn run(args: &StackArgs) -> Result<bool, Box<dyn Error>> {
         readme::STACK.write(&tables)?;
     }
     if args.check && !readme::STACK.is_current(&tables)? {
-        complain("firmware/README.md is not what is computed: cargo vm stack --write");
+        complain("firmware/README.md has drifted: cargo vm stack --write");
         passed = false;
     }
     Ok(passed)

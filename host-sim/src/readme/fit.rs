@@ -1,4 +1,4 @@
-//! The front page's "does it fit?": one row per core and arithmetic.
+//! The README's table "Does it fit?": one row per core and arithmetic.
 
 use super::place::ReadmeError;
 use crate::cycles::Core;
@@ -9,11 +9,12 @@ use vm_nostd::{
     ContinuousMuscle, FesMuscle, Fixed, IntramuscularFes, NaturalContinuous, Scalar, State,
 };
 
-/// An arithmetic on a core.
+/// A row: an arithmetic on a core.
 struct Fit {
     core: Core,
-    /// Name of the core, and the clock of a common part (STM32F405, STM32F103, STM32C0), MHz.
+    /// Name of the core.
     name: &'static str,
+    /// Clock of a common part (STM32F405, STM32F103, STM32C0), MHz.
     clock_mhz: f64,
     arithmetic: &'static str,
     /// Cases of the table of cycles, one per mode.
@@ -79,7 +80,7 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
     Ok(text)
 }
 
-/// Bytes of the coefficients and state of a muscle of two fibre types, in the larger of both modes.
+/// Bytes of coefficients and state of a muscle of two fibre types, the larger of both modes.
 fn muscle_bytes<S: Scalar>() -> usize {
     let continuous =
         size_of::<ContinuousMuscle<S, 2>>() + size_of::<State<S, NaturalContinuous, 2>>();
@@ -87,20 +88,20 @@ fn muscle_bytes<S: Scalar>() -> usize {
     continuous.max(fes)
 }
 
-/// Largest errors of an arithmetic at 1 ms, % of F0, where a tendon rings or where none does.
+/// Largest errors of an arithmetic at 1 ms, % of F0, in scenarios with or without a ringing tendon.
 fn errors<'a>(
     report: &'a Report,
     arithmetic: &'a str,
     ringing: bool,
 ) -> impl Iterator<Item = f64> + 'a {
-    let is_of = move |row: &&Row| {
+    let selected = move |row: &&Row| {
         let rings = tolerance::rings(&row.scenario);
-        row.arithmetic == arithmetic && !row.scenario.contains('@') && rings == ringing
+        row.arithmetic == arithmetic && row.is_at_1_ms() && rings == ringing
     };
-    report.rows.iter().filter(is_of).map(|row| row.max_pct_f0)
+    report.rows.iter().filter(selected).map(|row| row.max_pct_f0)
 }
 
-/// A number of the table of cycles.
+/// Reads a number from the table of cycles.
 fn cell(
     table: &str,
     core: Core,

@@ -1,4 +1,4 @@
-//! The front page's picture: force over time under FES, as the model computes it in `f32`.
+//! The picture of the README: force over time under FES, computed in `f32`.
 
 use super::place::ReadmeError;
 use crate::chart::{Chart, Line, Panel, Point};
@@ -6,9 +6,6 @@ use crate::engine::{self, Arithmetic};
 use crate::reference::{Input, Mode};
 use crate::scenario::paper_muscle;
 use crate::trace::InputTrace;
-
-/// Its file.
-pub const PICTURE: &str = "host-sim/docs/force.svg";
 
 /// Stimulation frequencies, pps.
 const FREQUENCIES: [f64; 3] = [10.0, 20.0, 40.0];

@@ -6,21 +6,16 @@ use crate::stack;
 use crate::verify::{Report, Row};
 use std::collections::BTreeMap;
 
-/// The table: f32 and fixed point against the reference, and the reference against the vectors.
+/// Accuracy of f32 and fixed point against the reference, and of the reference against the vectors.
 pub fn measured(report: &Report) -> String {
     let mut text = String::from(
         "| scenario | mode | f32 max | f32 rms | fixed max | fixed rms | f32 0.5 ms | fixed 0.5 ms | \
          f32 2 ms | reference, N |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let newtons = paper_muscle().f0() / 100.0;
-    let at_1_ms = |row: &&Row| row.arithmetic == "f32" && !row.scenario.contains('@');
-    for row in report.rows.iter().filter(at_1_ms) {
+    for row in at_1_ms(report, "f32") {
         let other = |step: &str, arithmetic: &str| {
-            let scenario = format!("{}{step}", row.scenario);
-            report.rows.iter().find(|other| {
-                (other.scenario == scenario && other.mode == row.mode)
-                    && other.arithmetic == arithmetic
-            })
+            report.row(&format!("{}{step}", row.scenario), &row.mode, arithmetic)
         };
         let max = |step: &str, arithmetic: &str| {
             let found = other(step, arithmetic);
@@ -45,14 +40,13 @@ pub fn measured(report: &Report) -> String {
     text
 }
 
-/// The table: what of the error is the scheme's, and what rounding and kernels add, at 1 ms.
+/// The error budget at 1 ms: truncation error, and what rounding and kernels add.
 pub fn error_budget(report: &Report) -> String {
     let mut text = String::from(
         "| scenario | mode | scheme | f32 adds | f32 measured | fixed adds | fixed measured |\n\
          |---|---|---:|---:|---:|---:|---:|\n",
     );
-    let at_1_ms = |row: &&Row| row.arithmetic == "f64" && !row.scenario.contains('@');
-    for scheme in report.rows.iter().filter(at_1_ms) {
+    for scheme in at_1_ms(report, "f64") {
         text.push_str(&format!(
             "| {} | {} | {:.4} |",
             scheme.scenario, scheme.mode, scheme.max_pct_f0
@@ -68,8 +62,12 @@ pub fn error_budget(report: &Report) -> String {
     text
 }
 
-/// The tables: what a tick costs, beside the baselines; where its cycles go; and on what
-/// instructions.
+/// Rows of an arithmetic at 1 ms.
+fn at_1_ms<'a>(report: &'a Report, arithmetic: &'a str) -> impl Iterator<Item = &'a Row> {
+    report.rows.iter().filter(move |row| row.arithmetic == arithmetic && row.is_at_1_ms())
+}
+
+/// Cost of a tick of the model and the baselines, by file, and by class of instruction.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
         "| core | case | class | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
@@ -109,8 +107,7 @@ pub fn cycles(rows: &[cycles::Row]) -> String {
     text
 }
 
-/// The tables: what each of the stimulator's tasks takes of the stack, and what that leaves of its
-/// memory.
+/// Stack of each of the stimulator's tasks, and its memory budget.
 pub fn stack(report: &stack::Report) -> String {
     let mut text =
         String::from("| task | priority | stack, B | largest frame |\n|---|---:|---:|---|\n");
@@ -123,7 +120,7 @@ pub fn stack(report: &stack::Report) -> String {
     format!("{text}\n{}", memory(report))
 }
 
-/// The table: what of the stimulator's memory goes where.
+/// The stimulator's memory budget.
 pub fn memory(report: &stack::Report) -> String {
     let mut text = String::from("| RAM | B | % |\n|---|---:|---:|\n");
     for (what, bytes) in [
@@ -140,11 +137,10 @@ pub fn memory(report: &stack::Report) -> String {
     text
 }
 
-/// A case and the shares of its ticks.
+/// A case with the shares of its parts.
 type Column<'a> = (&'a str, &'a [Share]);
 
-/// The table: what each part of a tick takes, cases side by side, the dearest part first; last, all
-/// of them.
+/// Cost of each part of a tick with one column per case, most expensive part first, then the sum.
 fn side_by_side(heading: &str, columns: &[Column<'_>], cell: fn(&Share) -> String) -> String {
     let mut total: BTreeMap<&str, f64> = BTreeMap::new();
     for share in columns.iter().flat_map(|(_, shares)| *shares) {
@@ -174,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_stand_side_by_side_the_dearest_first_and_add_up() {
+    fn parts_are_sorted_by_cost_and_summed() {
         let share = |name: &str, instructions, cycles| Share {
             name: name.to_owned(),
             instructions,
