@@ -1,4 +1,4 @@
-//! The program `vm` as a user meets it: its files, its messages, its exit codes.
+//! The command line `vm`: files, messages and exit codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
 const HEADER: &str = "t_s,activation,path_length_m,stim_hz\n";
 
-/// A folder with a muscle and an input file, and what `vm run` makes of them.
+/// A folder with a muscle file, an input file and an output file.
 struct Bench {
     folder: tempfile::TempDir,
 }
@@ -41,7 +41,7 @@ impl Bench {
         ])
     }
 
-    /// The run is refused with exit code 2, a message with all of `words`, and no file touched.
+    /// Asserts exit code 2, a message with all of `words`, and that no file changed.
     fn refused(&self, words: &[&str]) {
         let output = self.run("continuous", "f32");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -52,7 +52,7 @@ impl Bench {
         let text = fs::read_to_string(self.path("out.csv")).expect("the output file");
         assert_eq!(text, "as it was", "{message}");
         let left = fs::read_dir(self.folder.path()).expect("the folder").count();
-        assert_eq!(left, 3, "no file left behind");
+        assert_eq!(left, 3, "a temporary file is left");
     }
 }
 
@@ -60,7 +60,7 @@ fn vm(arguments: &[&Path]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vm")).args(arguments).output().expect("vm runs")
 }
 
-/// A row of inputs per tick: full activation at 40 pps.
+/// Input rows: full activation at 40 pps.
 fn stimulated(ticks: usize) -> String {
     let row = |tick: usize| format!("{},1,0.16,40\n", tick as f64 * 1e-3);
     rows(&(0..=ticks).map(row).collect::<String>())
@@ -73,11 +73,11 @@ fn forces(bench: &Bench) -> Vec<f64> {
     text.lines().skip(1).map(|line| force(line).expect("a force")).collect()
 }
 
-/// Ten seconds at 40 pps, from the equation: λ = 0.4 + 0.6 · 0.16 = 0.496.
+/// Against the equation after ten seconds at 40 pps: λ = 0.4 + 0.6 · 0.16 = 0.496.
 #[test]
-fn a_muscle_tires_where_its_file_says_so() {
+fn a_muscle_with_fatigue_parameters_fatigues() {
     let table = "\n[fatigue]\nT_fat_s = 18\nT_rec_s = 30\nfit_min = 0\nbeta = 0.6\n";
-    // N. Forces are told to nine digits, and in fixed point to 1 mN.
+    // N. Forces are printed with nine digits; fixed point has a resolution of 1 mN.
     for (arithmetic, most) in [("reference", 1.5e-6), ("f32", 4e-4), ("fixed", 1.6e-3)] {
         let fresh = Bench::new(MUSCLE, &stimulated(10_000));
         let tired = Bench::new(&format!("{MUSCLE}{table}"), &stimulated(10_000));
@@ -111,7 +111,7 @@ fn rows(text: &str) -> String {
 const GOOD: &str = "0,0,0.16,0\n0.001,0.5,0.16,0\n0.002,0.5,0.16,0\n";
 
 #[test]
-fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
+fn an_invalid_muscle_is_refused_with_key_value_and_limit() {
     let cases: &[(&str, &str, &[&str])] = &[
         ("mass_g = 97.5", "mass_g = -97.5", &["line 3: mass_g = -97.5", "between 0.01 and 30000"]),
         ("mass_g = 97.5", "mass_g = 0", &["mass_g = 0", "between 0.01"]),
@@ -181,7 +181,7 @@ fn a_muscle_that_cannot_be_is_refused_by_key_value_and_limit() {
 }
 
 #[test]
-fn an_input_file_that_cannot_be_is_refused_by_line_and_column() {
+fn an_invalid_input_file_is_refused_with_line_and_column() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["line 1", "column t_s", "header"]),
         ("t_s,activation,path,stim_hz\n0,0,0.16,0\n", &["line 1", "path_length_m", "\"path\""]),
@@ -216,7 +216,7 @@ fn an_input_file_that_cannot_be_is_refused_by_line_and_column() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named() {
+fn a_missing_file_is_named() {
     let bench = Bench::new(MUSCLE, &rows(GOOD));
     fs::remove_file(bench.path("in.csv")).expect("a file to remove");
     let output = bench.run("fes", "reference");
@@ -225,7 +225,7 @@ fn a_file_that_is_not_there_is_named() {
 }
 
 #[test]
-fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
+fn a_run_writes_one_row_per_input_and_ignores_extra_columns() {
     let vector = include_str!("../data/vectors/fes_steps.csv");
     for arithmetic in ["reference", "f32", "f64"] {
         let bench = Bench::new(MUSCLE, vector);
@@ -239,8 +239,8 @@ fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
             Some("t_s,force_n,fascicle_length_l0,fascicle_velocity_l0_per_s,status")
         );
         assert_eq!(text.lines().count(), vector.lines().count());
-        // Against the force in the vector's fifth column, in N, to 0.1 % of F0: how near is
-        // `verify`'s to say, this is about the right columns.
+        // Against the force in the vector's fifth column to 0.1 % of F0. This checks the columns;
+        // `verify` checks the accuracy.
         for (line, expected) in lines.zip(vector.lines().skip(1)) {
             let cell = |text: &str, index: usize| {
                 text.split(',').nth(index).expect("a cell").parse::<f64>().expect("a number")
@@ -254,7 +254,7 @@ fn a_run_writes_one_row_per_input_and_ignores_further_columns() {
 }
 
 #[test]
-fn motor_units_give_the_authors_forces_and_have_to_be_named() {
+fn discrete_modes_give_the_authors_forces_and_need_units() {
     const VECTOR: &str = include_str!("../data/vectors/discrete_3_activation_3hz.csv");
     let three = MUSCLE.replace("[[fiber]]", "[[fiber]]\nunits = 3");
     let force = |line: &str, column: usize| -> f64 {
@@ -279,7 +279,7 @@ fn motor_units_give_the_authors_forces_and_have_to_be_named() {
 }
 
 #[test]
-fn the_input_is_not_overwritten_and_what_is_no_file_is_not_replaced() {
+fn the_input_is_not_overwritten_and_links_and_devices_are_not_replaced() {
     let bench = Bench::new(MUSCLE, &rows(GOOD));
     let run_to = |output: &Path| {
         let (muscle, input) = (bench.path("m.toml"), bench.path("in.csv"));
@@ -299,7 +299,7 @@ fn the_input_is_not_overwritten_and_what_is_no_file_is_not_replaced() {
         assert_eq!(run_to(&bench.path("link.csv")), Some(0));
         assert!(fs::symlink_metadata(bench.path("link.csv")).expect("the link").is_symlink());
         let after = fs::metadata(bench.path("out.csv")).expect("the output");
-        // Replaced in one stroke, not written over: whoever reads the old one reads it whole.
+        // Replaced atomically: a reader of the old file reads it to its end.
         assert_ne!(before, after.ino());
         assert_eq!(run_to(Path::new("/dev/null")), Some(0));
         assert!(fs::metadata("/dev/null").expect("/dev/null").file_type().is_char_device());
@@ -308,7 +308,7 @@ fn the_input_is_not_overwritten_and_what_is_no_file_is_not_replaced() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_closed_output_is_an_error_and_not_a_panic() {
+fn a_full_output_is_an_error_and_not_a_panic() {
     let full = || fs::File::options().write(true).open("/dev/full").expect("/dev/full");
     let status = Command::new(env!("CARGO_BIN_EXE_vm"))
         .arg("golden")
@@ -320,7 +320,7 @@ fn a_closed_output_is_an_error_and_not_a_panic() {
 }
 
 #[test]
-fn late_times_are_written_as_they_were_read() {
+fn large_times_are_written_as_read() {
     let input = rows("1700000000,0,0.16,0\n1700000000.001,0,0.16,0\n1700000000.002,0,0.16,0\n");
     let bench = Bench::new(MUSCLE, &input);
     assert!(bench.run("continuous", "f32").status.success());
@@ -330,7 +330,7 @@ fn late_times_are_written_as_they_were_read() {
 }
 
 #[test]
-fn what_was_saturated_is_named_in_the_status() {
+fn the_status_names_what_was_clipped() {
     let input = rows("0,0,0.16,0\n0.001,1.5,0.16,0\n0.002,0.5,0.3,-4\n");
     let bench = Bench::new(MUSCLE, &input);
     assert!(bench.run("fes", "f32").status.success());
@@ -359,8 +359,8 @@ fn types_may_be_listed_in_any_order_and_overridden_by_name() {
 }
 
 #[test]
-fn a_type_of_the_users_own_needs_no_preset() {
-    // The coefficients of the paper's slow type, one by one.
+fn a_custom_fibre_type_needs_no_preset() {
+    // The coefficients of the paper's slow type.
     let own = "rank = 2\nf05_pps = 12\nfmin = 0.5\nfmax = 2\nomega = 1.12\nbeta = 2.3\nrho = 1.62\n\
                Vmax = -7.88\ncV0 = 5.88\ncV1 = 0\naV0 = -4.7\naV1 = 8.41\naV2 = -5.34\nbV = 0.35\n\
                af = 0.56\nnf0 = 2.1\nnf1 = 5\nTf1_ms = 34.3\nTf2_ms = 22.7\nTf3_ms = 47.0\n\
@@ -427,7 +427,7 @@ fn verify_as_json_has_the_agreed_keys_and_passes() {
 }
 
 #[test]
-fn a_human_muscle_goes_by_its_name_where_no_such_file_is() {
+fn a_built_in_muscle_is_found_by_name_unless_a_file_has_it() {
     let input = rows("0,0,0.34,0\n0.001,1,0.34,0\n0.002,1,0.34,0\n");
     let bench = Bench::new(MUSCLE, &input);
     let run = |muscle: &str| {
@@ -445,14 +445,14 @@ fn a_human_muscle_goes_by_its_name_where_no_such_file_is() {
     assert!(message.contains("tibialis_posteriorr: no such file"), "{message}");
     assert!(message.contains("vm muscles"), "{message}");
 
-    // A file of that name comes first: the deltoid cannot be so long.
+    // A file takes precedence; here the path is outside the validity range of its muscle.
     fs::write(bench.path("tibialis_anterior"), MUSCLE).expect("a muscle file");
     let file = run("tibialis_anterior");
     assert_eq!(file.status.code(), Some(2), "the file is taken");
 }
 
 #[test]
-fn named_muscles_are_listed_with_what_is_assumed_of_them() {
+fn built_in_muscles_are_listed_with_their_assumptions() {
     let output = vm(&["muscles".as_ref()]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success());

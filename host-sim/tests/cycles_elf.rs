@@ -1,7 +1,7 @@
-//! `vm cycles --elf`: functions of one name are told apart, and a program that never ends is
+//! `vm cycles --elf`: functions of equal name are distinguished, and a program that never ends is
 //! stopped.
 //!
-//! The images are made here, of a few instructions. Where QEMU cannot be had, what needs it says
+//! The images are assembled here from a few instructions. Without QEMU, tests that need it print
 //! SKIPPED.
 
 use std::fs;
@@ -9,9 +9,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 const FLASH: u32 = 0x0800_0000;
-/// Where code begins, behind stack pointer and reset vector.
+/// Start of code, after stack pointer and reset vector.
 const CODE: u32 = FLASH + 8;
-/// The symbols of two functions of one name, as Rust mangles them.
+/// Mangled symbols of two functions of equal name.
 const FIRST: &str = "_ZN4test4spin17h0123456789abcdefE";
 const SECOND: &str = "_ZN4test4spin17hfedcba9876543210E";
 
@@ -21,15 +21,15 @@ const WFI: u16 = 0xBF30;
 /// `b .`
 const FOREVER: u16 = 0xE7FE;
 
-/// `bl` from one address to another behind it.
+/// `bl` from one address to a later one.
 fn call(from: u32, to: u32) -> [u16; 2] {
     let offset = to - (from + 4);
     assert!(offset < 1 << 12);
     [0xF000, 0xF800 | (offset >> 1) as u16]
 }
 
-/// A program: reset calls the first `spin` twice, which takes two instructions; the other takes
-/// four, and `stuck` does not return. Then the program goes on as `end` says.
+/// A program: reset calls the first `spin` (two instructions) twice and ends with the instruction
+/// `end`. The other `spin` has four instructions, and `stuck` does not return.
 fn program(end: u16) -> Vec<u8> {
     let [first, second, stuck] = [CODE + 12, CODE + 16, CODE + 24];
     let mut code = Vec::new();
@@ -70,10 +70,10 @@ fn image(code: &[u16], functions: &[(&str, u32, u32)]) -> Vec<u8> {
     ] = [&text[..], &symbols, &names, section_names].map(&mut place);
     let headers_at = start + contents.len() as u32;
     let mut file = b"\x7fELF\x01\x01\x01\0\0\0\0\0\0\0\0\0".to_vec();
-    // An executable for Arm, version 1, entered at reset; then where headers are, and how many.
+    // ELF header: executable, Arm, version 1, entry at reset; offsets and counts of headers.
     file.extend(words(&[0x0028_0002, 1, CODE | 1, 52, headers_at, 0x0500_0000]));
     file.extend(words(&[0x0020_0034, 0x0028_0001, 0x0004_0005]));
-    // Loaded: offset, address twice, sizes; readable and executable.
+    // Program header: offset, virtual and physical address, sizes; readable and executable.
     file.extend(words(&[1, text_at, FLASH, FLASH, text_size, text_size, 5, 4]));
     file.extend(contents);
     file.extend(words(&[0; 10]));
@@ -93,7 +93,7 @@ fn cycles(image: &Path, arguments: &str) -> Output {
         .expect("vm runs")
 }
 
-/// Standard output and error; none where QEMU is missing, which is said.
+/// Standard output and error; `None`, with a message, if QEMU is missing.
 fn said(output: &Output) -> Option<(String, String)> {
     let [out, error] =
         [&output.stdout, &output.stderr].map(|b| String::from_utf8_lossy(b).into_owned());
@@ -107,7 +107,7 @@ fn said(output: &Output) -> Option<(String, String)> {
 }
 
 #[test]
-fn two_functions_of_one_name_are_told_apart_by_address_and_by_symbol() {
+fn functions_of_equal_name_are_selected_by_address_or_symbol() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.elf");
     fs::write(&path, program(FOREVER)).expect("an image");
@@ -118,7 +118,7 @@ fn two_functions_of_one_name_are_told_apart_by_address_and_by_symbol() {
     for word in ["2 functions are named \"spin\"", &first, &second, FIRST, SECOND] {
         assert!(message.contains(word), "no \"{word}\" in: {message}");
     }
-    // Called directly, each by what the message offers.
+    // Direct calls, by each name that the message lists.
     for (name, instructions) in [(first.as_str(), 2), (&second, 4), (FIRST, 2), (SECOND, 4)] {
         let output = cycles(&path, &format!("--symbol {name} --entry --timeout 20"));
         let Some((text, message)) = said(&output) else { return };
@@ -132,13 +132,13 @@ fn two_functions_of_one_name_are_told_apart_by_address_and_by_symbol() {
 }
 
 #[test]
-fn a_program_that_never_ends_is_stopped_after_the_stated_limit() {
+fn a_program_that_never_ends_is_stopped_at_the_timeout() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.elf");
-    // Whether it goes round in circles or sleeps.
+    // Both in an endless loop and asleep.
     for end in [FOREVER, WFI] {
         fs::write(&path, program(end)).expect("an image");
-        // What returned until then is counted.
+        // Calls that returned before the timeout are counted.
         let output = cycles(&path, &format!("--symbol {FIRST} --timeout 2"));
         let Some((text, message)) = said(&output) else { return };
         assert!(output.status.success(), "{message}");
@@ -147,7 +147,7 @@ fn a_program_that_never_ends_is_stopped_after_the_stated_limit() {
             "{message}"
         );
         assert!(text.contains("2 calls of up to 2 instructions"), "{text}");
-        // What was not called, or does not return, is said.
+        // Functions that were not called or did not return are reported.
         let output = cycles(&path, &format!("--symbol {SECOND} --timeout 2"));
         let (_, message) = said(&output).expect("QEMU");
         assert_eq!(output.status.code(), Some(2), "{message}");

@@ -1,5 +1,5 @@
-//! `vm figures` leaves its files, its numbers are the authors' where they are known, and its claims
-//! say what is found.
+//! `vm figures`: its files, the agreement with the authors' numbers where these are known, and the
+//! claims with their results.
 
 use std::fs;
 use std::process::Command;
@@ -12,9 +12,9 @@ const AUTHORS: [(f64, [f64; 3]); 3] = [
 ];
 
 #[test]
-fn figures_come_with_their_numbers_and_claims() {
+fn figures_numbers_and_claims_are_written() {
     let folder = tempfile::tempdir().expect("a folder");
-    // One that is not there yet.
+    // A folder that does not exist yet.
     let out = folder.path().join("figures");
     let output = Command::new(env!("CARGO_BIN_EXE_vm"))
         .args(["figures", "--out"])
@@ -30,7 +30,7 @@ fn figures_come_with_their_numbers_and_claims() {
         assert!(svg.matches("<polyline").count() >= 2, "{name}: lines");
         printable(name, &svg);
     }
-    // Inputs are drawn above what they cause, and what the paper prints beside what is found.
+    // Inputs are drawn above the responses, the paper's printed values beside the computed ones.
     let axes = |name: &str| attributes(&read(&format!("{name}.svg")), "axis");
     assert!(axes("arm").iter().any(|axis| axis.ends_with(">U (1)")));
     let responses = axes("sinusoid_responses");
@@ -41,10 +41,10 @@ fn figures_come_with_their_numbers_and_claims() {
     for (name, marks) in
         [("static_force", 3 * 11 + 1), ("static_force_start", 3 * 4 + 1), ("computation", 2 + 1)]
     {
-        // One of them in the legend.
+        // Including one in the legend.
         assert_eq!(read(&format!("{name}.svg")).matches("class=\"mark\"").count(), marks, "{name}");
     }
-    // Figure 4(b) ends at U = 0.3, and a step of recruitment is vertical.
+    // Figure 4(b) ends at U = 0.3; recruitment steps are vertical.
     let start = read("static_force_start.svg");
     let labels = attributes(&start, "tick-x");
     assert!(labels.last().is_some_and(|label| label.ends_with(">0.30")), "{labels:?}");
@@ -66,14 +66,14 @@ fn figures_come_with_their_numbers_and_claims() {
     assert_eq!(read("sinusoids.csv").lines().count(), 1 + 2 * 10);
     assert_eq!(read("sinusoid_responses.csv").lines().count(), 1 + 2 * 1000);
 
-    // The steps with which 6 and 60 units are recruited; the first of 3 + 3 at 0.8 of 60 % of the
-    // first unit's share.
+    // Recruitment steps of 6 and 60 units; the first of 3 + 3 is at 0.8 times 60 % times the first
+    // unit's share.
     let steps = read("static_force_steps.csv");
     assert_eq!(steps.lines().count(), 1 + 6 + 60, "{steps}");
     assert!(steps.lines().nth(1).is_some_and(|line| line.starts_with("3,0.12,")), "{steps}");
     assert_eq!(read("arm.csv").lines().count(), 1 + 30_001);
 
-    // What each claim is held to is said, and what does not hold does not.
+    // Each claim states its limit, and a claim that fails its reason.
     let mut reader = csv::Reader::from_path(out.join("claims.csv")).expect("claims");
     let claims: Vec<Vec<String>> = reader
         .records()
@@ -111,7 +111,7 @@ fn figures_come_with_their_numbers_and_claims() {
     // codes.
     assert!((number(&claims[5][4]) - 0.45).abs() < 0.05, "{}", claims[5][4]);
     assert!((number(&claims[6][4]) - 11.0).abs() < 0.5, "{}", claims[6][4]);
-    // The arm goes on swinging, neither growing nor dying out.
+    // The arm keeps swinging with constant amplitude.
     let period = claims[0][4].split("period ").nth(1).expect("a period");
     assert!((number(period) - 2.4).abs() < 0.1, "{}", claims[0][4]);
     assert!(
@@ -120,7 +120,7 @@ fn figures_come_with_their_numbers_and_claims() {
         claims[0][4]
     );
     assert!(claims[1][4].contains("no period"), "{}", claims[1][4]);
-    // The units of figure 7, in cycles: nothing of it depends on the machine.
+    // The units of figure 7, in cycles, independent of the machine.
     let costs = read("computation.csv");
     assert!(costs == include_str!("../data/computation.csv"), "{costs}");
     for mode in ["discrete", "discrete-leff"] {
@@ -135,7 +135,7 @@ fn figures_come_with_their_numbers_and_claims() {
 const FIGURES: [&str; 6] =
     ["arm", "static_force", "static_force_start", "sinusoid_responses", "sinusoids", "computation"];
 
-/// What stands before and in each text of a class: its attributes, and the text.
+/// Attributes and text of each element of a class.
 fn attributes(svg: &str, class: &str) -> Vec<String> {
     let begin = format!("<text class=\"{class}\"");
     svg.lines()
@@ -163,8 +163,8 @@ fn points(svg: &str) -> Vec<Vec<(f64, f64)>> {
     svg.lines().filter_map(of_line).collect()
 }
 
-/// What a printed figure needs: a legend that lies on no data, labels that are whole, lines that
-/// are no stairs, and lines of one panel that can be told apart where they coincide.
+/// Requirements of a printed figure: no legend over data, no clipped labels, no stair-stepped
+/// lines, and different dashes for the lines of a panel.
 fn printable(name: &str, svg: &str) {
     let frames: Vec<(f64, f64)> = svg
         .lines()
@@ -184,17 +184,17 @@ fn printable(name: &str, svg: &str) {
     assert!(labels.len() >= 4, "{name}: {labels:?}");
     for label in &labels {
         let text = label.split('>').nth(1).expect("a text");
-        // Digits of 13 pixels are 8 wide at most.
+        // A digit of 13 pixels height is at most 8 wide.
         let half = 4.0 * text.len() as f64;
         let x = number(label, "x");
         assert!(x + half <= width && x - half >= 0.0, "{name}: {label} is cut off");
     }
     for title in attributes(svg, "title") {
-        // Letters of 18 pixels are 9 wide on average.
+        // A letter of 18 pixels height is 9 wide on average.
         let letters = title.split('>').nth(1).expect("a text").chars().count();
         assert!(9.0 * (letters as f64) < width, "{name}: {title} is cut off");
     }
-    // Samples of a legend and horizontal lines apart.
+    // Except for legend samples and horizontal lines.
     let lines: Vec<_> = points(svg).into_iter().filter(|line| line.len() > 2).collect();
     let fractions = lines.iter().flatten().filter(|point| point.1.fract() != 0.0).count();
     let all = lines.iter().map(Vec::len).sum::<usize>();
@@ -208,7 +208,7 @@ fn printable(name: &str, svg: &str) {
             let dash =
                 line.split("stroke-dasharray=").nth(1).and_then(|text| text.split('"').nth(1));
             let dash = dash.expect("dashes").to_owned();
-            // Samples of the next legend are behind the lines of this panel.
+            // The samples of the next legend follow the lines of this panel.
             if line.split('"').nth(1).is_some_and(|points| points.split(' ').count() > 2) {
                 assert!(!dashes.contains(&dash), "{name}: two lines with dashes {dash}");
                 dashes.push(dash);

@@ -1,5 +1,5 @@
-//! `vm fit`: what went into a recording is found again; what is wrong with a recording is named by
-//! file, line and column, and nothing is written.
+//! `vm fit`: the parameters of a synthetic recording are recovered; an invalid recording is refused
+//! with file, line and column, and nothing is written.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::muscle_file;
@@ -12,18 +12,18 @@ use std::process::{Command, Output};
 const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
 const DOCUMENT: &str = include_str!("../docs/trials.md");
 
-/// What the recording is made with.
+/// True parameters of the recording.
 const FORCE: f64 = 310.0;
 const PATH: f64 = 0.152;
 
-/// The example of the document.
+/// The example in the documentation.
 fn example() -> &'static str {
     let begin = DOCUMENT.find("```toml\n").expect("an example") + "```toml\n".len();
     let end = DOCUMENT[begin..].find("```").expect("its end");
     &DOCUMENT[begin..begin + end]
 }
 
-/// Noise of 1, evenly distributed, always the same.
+/// Reproducible uniform noise of standard deviation 1.
 fn noise(index: usize) -> f64 {
     let mut bits = index as u64 + 1;
     for _ in 0..3 {
@@ -33,8 +33,8 @@ fn noise(index: usize) -> f64 {
     ((bits >> 11) as f64 * 2_f64.powi(-53) - 0.5) * 12_f64.sqrt()
 }
 
-/// The recording of the example: made by the reference of a stronger muscle on another path, every
-/// 7 ms, with 1 % of F0 of noise.
+/// The recording of the example: force of the reference for a stronger muscle on another path,
+/// every 7 ms, with noise of 1 % of F0.
 fn recording() -> String {
     let mut muscle = muscle_file::parse(MUSCLE, Path::new("m.toml")).expect("a muscle").muscle;
     muscle.mass *= FORCE / muscle.f0();
@@ -57,11 +57,11 @@ fn recording() -> String {
         let time = tick as f64 * 1e-3;
         text += &format!("{time},{force:.4},{}\n", 1e3 * change(time));
     }
-    // Up to the end of the window.
+    // To the end of the window.
     text + "1.2,0.5,0\n"
 }
 
-/// A folder with a muscle, a list and a recording.
+/// A folder with a muscle file, a list of trials and a recording.
 struct Bench(tempfile::TempDir);
 
 impl Bench {
@@ -104,7 +104,7 @@ fn text(path: &Path) -> String {
     fs::read_to_string(path).expect("a file")
 }
 
-/// A number and its interval, from the comments of a fitted file.
+/// A value and its interval, from the comments of a fitted file.
 fn fitted(file: &str, name: &str) -> (f64, f64, f64) {
     let line = file.lines().find(|line| line.starts_with(&format!("# {name} = "))).expect("a line");
     let numbers: Vec<f64> = line
@@ -116,7 +116,7 @@ fn fitted(file: &str, name: &str) -> (f64, f64, f64) {
 }
 
 #[test]
-fn what_went_into_the_example_is_found_again_with_the_same_bytes() {
+fn the_examples_parameters_are_recovered_reproducibly() {
     let bench = Bench::new(example(), &recording());
     let search = ["--starts", "3", "--seed", "7", "--report", "fit.html"];
     let done = bench.fit("fitted.toml", &search);
@@ -128,7 +128,7 @@ fn what_went_into_the_example_is_found_again_with_the_same_bytes() {
         assert!((value / truth - 1.0).abs() < 0.01, "{name}: {value}");
         assert!(most - least < 0.05 * truth, "{name}: {least} to {most}");
     }
-    // The same muscle as any other file, in firmware's arithmetics too.
+    // The fitted file is a valid muscle file, in the firmware's arithmetics as well.
     let muscle = muscle_file::parse(&file, Path::new("fitted.toml")).expect("a muscle").muscle;
     assert!((muscle.f0() / FORCE - 1.0).abs() < 0.01, "{} N", muscle.f0());
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
@@ -152,7 +152,7 @@ fn broken(line: usize, by: &str) -> String {
 }
 
 #[test]
-fn what_is_wrong_with_a_recording_is_named_by_file_line_and_column() {
+fn an_invalid_recording_is_refused_with_file_line_and_column() {
     let cases: &[(String, &[&str])] = &[
         (broken(9, "0.049,,0.1"), &["tetanus.csv, line 9, column force_n: missing"]),
         (broken(9, "0.049,inf,0.1"), &["line 9, column force_n", "\"inf\" is not a finite"]),
@@ -187,7 +187,7 @@ fn changed(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn what_is_wrong_with_a_list_is_named_by_key() {
+fn an_invalid_list_of_trials_is_refused_with_its_key() {
     let cases: &[(&str, &str, &[&str])] = &[
         ("weight = 1 ", "weights = 1 ", &["trials.toml", "weights"]),
         ("role = \"fit\"", "role = \"fitted\"", &["fitted"]),
@@ -222,8 +222,8 @@ fn what_is_wrong_with_a_list_is_named_by_key() {
 }
 
 #[test]
-fn a_parameter_that_the_recording_does_not_determine_is_refused_by_name() {
-    // FES recruits all types alike.
+fn an_undetermined_parameter_is_refused_by_name() {
+    // FES recruits all types in proportion.
     let free = "[[free]]\nname = \"recruitment_saturation\"\nPRIOR\n[[free]]";
     let without = changed("[[free]]", &free.replace("PRIOR", ""));
     Bench::new(&without, &recording()).refused(&["not determined", "recruitment_saturation"]);

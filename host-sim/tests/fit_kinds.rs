@@ -1,5 +1,4 @@
-//! `vm fit` to recordings of other kinds: pulses of an electrode, torque about a joint, a muscle
-//! that tires.
+//! `vm fit` with other kinds of recordings: electrode pulses, joint torque, a fatiguing muscle.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::muscle_file::{self, NamedMuscle};
@@ -13,12 +12,12 @@ use vm_nostd::{Pulse, RecruitmentCurve, RecruitmentCurveParams};
 const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
 const PATH: f64 = 0.155;
 
-/// The electrode that muscles start from here; the recordings are another's.
+/// Starting recruitment curve; the recordings have another.
 const CURVE: &str = "[recruitment_curve]\nthreshold_ma = 4\nsaturation_ma = 12\n\
                      chronaxie_us = 200\nslope = 2\n";
 const FATIGUE: &str = "[fatigue]\nT_fat_s = 18\nT_rec_s = 30\nfit_min = 0.2\nbeta = 0.6\n";
 
-/// The muscle with a further table.
+/// The muscle file with an additional table.
 fn file(table: &str) -> String {
     format!("{MUSCLE}\n{table}")
 }
@@ -27,10 +26,10 @@ fn parse(text: &str) -> NamedMuscle {
     muscle_file::parse(text, Path::new("m.toml")).expect("a muscle")
 }
 
-/// Force (N) every 10 ms of what the reference makes of an activation on a constant path.
+/// Force (N) of the reference every 10 ms, on a constant path.
 fn forces(muscle: &Muscle, seconds: f64, pps: f64, activation: impl Fn(f64) -> f64) -> Vec<f64> {
     let input = |tick: usize| Input {
-        // In force during the tick.
+        // Constant during the tick.
         activation: activation(tick as f64 * 1e-3 - 0.5e-3),
         path_length: PATH,
         stimulation_frequency: pps,
@@ -42,7 +41,7 @@ fn forces(muscle: &Muscle, seconds: f64, pps: f64, activation: impl Fn(f64) -> f
     rows.iter().step_by(10).map(|row| row.0.force).collect()
 }
 
-/// Fits to what was recorded; the text of the fitted file.
+/// Fits to a recording and returns the text of the fitted file.
 fn fitted(muscle: &str, trials: &str, column: &str, recorded: &[f64]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| -> PathBuf { folder.path().join(name) };
@@ -64,11 +63,11 @@ fn fitted(muscle: &str, trials: &str, column: &str, recorded: &[f64]) -> String 
 }
 
 fn near(found: f64, truth: f64, what: &str) {
-    // No noise: what is left is the scheme's difference from the reference, 0.1 % of F0.
+    // Without noise the error is the truncation error, 0.1 % of F0.
     assert!((found / truth - 1.0).abs() < 0.01, "{what}: {found}, and not {truth}");
 }
 
-/// Pairs of a time and a value as `steps`.
+/// Pairs of time and value in the format of `steps`.
 fn steps(pairs: &[(f64, f64)]) -> String {
     let pairs: Vec<String> = pairs.iter().map(|(t, v)| format!("[{t}, {v}]")).collect();
     format!("{{ steps = [{}] }}", pairs.join(", "))
@@ -79,7 +78,7 @@ fn at(pairs: &[(f64, f64)], time: f64) -> f64 {
 }
 
 #[test]
-fn a_recruitment_curve_is_fitted_to_pulses_and_is_data_in_the_file() {
+fn a_recruitment_curve_is_fitted_and_written_to_the_file() {
     let truth = RecruitmentCurveParams {
         threshold: 5e-3,
         saturation: 10e-3,
@@ -87,7 +86,7 @@ fn a_recruitment_curve_is_fitted_to_pulses_and_is_data_in_the_file() {
         slope: 3.0,
     };
     let curve = RecruitmentCurve::<f64>::build(&truth).expect("a curve");
-    // Up a stair at one width, and at another.
+    // A staircase of amplitudes at each of two widths.
     let stair = |from: f64| {
         (0..10).map(move |step| (from + 0.3 * f64::from(step), 6.0 + 2.0 * f64::from(step)))
     };
@@ -116,7 +115,7 @@ fn a_recruitment_curve_is_fitted_to_pulses_and_is_data_in_the_file() {
     near(read.saturation, truth.saturation, "saturation");
     near(read.chronaxie, truth.chronaxie, "chronaxie");
     near(read.slope, truth.slope, "slope");
-    // A list may bring its own electrode; it ends in the file, too.
+    // A list may have its own curve, which is written to the fitted file as well.
     let own = format!("{CURVE}{}", trials.replace("noise_n = 1\n", ""));
     let own = format!("noise_n = 1\n{own}");
     let found = fitted(MUSCLE, &own, "force_n", &recorded);
@@ -124,7 +123,7 @@ fn a_recruitment_curve_is_fitted_to_pulses_and_is_data_in_the_file() {
 }
 
 #[test]
-fn torque_over_its_moment_arm_is_force() {
+fn torque_divided_by_the_moment_arm_is_force() {
     let mut strong = parse(MUSCLE).muscle;
     strong.mass *= 300.0 / strong.f0();
     let arm = 0.04;
@@ -142,7 +141,7 @@ fn torque_over_its_moment_arm_is_force() {
 }
 
 #[test]
-fn how_a_muscle_tires_and_recovers_is_fitted() {
+fn fatigue_parameters_are_fitted() {
     let mut tired = parse(&file(FATIGUE)).muscle;
     let truth = Fatigue { T_fat: 12.0, T_rec: 40.0, fit_min: 0.3, beta: 0.6 };
     tired.fatigue = Some(truth);
@@ -167,7 +166,7 @@ fn how_a_muscle_tires_and_recovers_is_fitted() {
 }
 
 #[test]
-fn a_curve_that_cannot_be_is_refused_by_key_and_line() {
+fn an_invalid_curve_is_refused_with_key_and_line() {
     let text = file(&CURVE.replace("saturation_ma = 12", "saturation_ma = 4.1"));
     let error = muscle_file::parse(&text, Path::new("m.toml")).expect_err("refused").to_string();
     let line = text.lines().position(|line| line.starts_with("saturation_ma")).expect("a line") + 1;

@@ -1,10 +1,10 @@
-//! A device of another version of the protocol is named as such, whichever side sees it first.
+//! Different protocol versions are reported, whichever side detects them.
 
 use firmware::link::{LinkError, Message, NO_SESSION, VERSION, encode};
 use host_sim::hil::Client;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
-/// A device that says the same whatever it hears.
+/// A device with a constant answer.
 struct Says(Vec<u8>);
 
 impl Read for Says {
@@ -26,7 +26,7 @@ impl Write for Says {
     }
 }
 
-/// Its frame with another version in it.
+/// Frame of a message with another version.
 fn of_version(version: u8, message: &Message<'_>) -> Vec<u8> {
     let mut frame = encode(NO_SESSION, 0, message).expect("a frame").to_vec();
     let length = cobs::decode_in_place(&mut frame).expect("a frame");
@@ -45,12 +45,12 @@ fn of_version(version: u8, message: &Message<'_>) -> Vec<u8> {
 }
 
 #[test]
-fn both_versions_are_in_the_error_and_what_to_do() {
+fn the_error_names_both_versions_and_the_remedy() {
     let expected = format!(
         "the device has version 1 of the link's protocol, this program version {VERSION}: \
          flash the firmware of this program's version"
     );
-    // An older device answers in its own version; one that can be understood says so itself.
+    // An older device answers in its own version, or reports the difference itself.
     let refusal = Message::NotActedUpon(LinkError::Version { got: VERSION, known: 1 });
     for said in [of_version(1, &refusal), of_version(VERSION, &refusal)] {
         let error = Client::new(Says(said)).greet().expect_err("another version");

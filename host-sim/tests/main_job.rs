@@ -1,10 +1,10 @@
-//! The main job, `vm` without a command, ends in six lines: the worst scenario of each mode and
+//! The main job, `vm` without a command, ends with six lines: the worst scenario of each mode and
 //! arithmetic.
 
 use std::process::Command;
 
 #[test]
-fn the_main_job_ends_in_six_lines_that_name_the_worst_scenarios() {
+fn the_main_job_ends_with_six_lines_of_worst_scenarios() {
     let output = Command::new(env!("CARGO_BIN_EXE_vm")).output().expect("vm runs");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
@@ -26,8 +26,7 @@ fn the_main_job_ends_in_six_lines_that_name_the_worst_scenarios() {
         let number = |text: &str| text.parse::<f64>().expect(line);
         let (error, limit) = (number(error), number(limit));
         assert!(error <= limit && number(seconds) > 0.0, "{line}");
-        // The limit is the one of the table of tolerances, and no scenario at 1 ms has a larger one
-        // by much.
+        // The limit is that of the table of tolerances.
         let of_pair = |row: &&str| {
             let cells: Vec<&str> = row.split(',').collect();
             cells[1].starts_with(mode) && cells[2] == arithmetic && cells[3] == "reference"
@@ -35,7 +34,7 @@ fn the_main_job_ends_in_six_lines_that_name_the_worst_scenarios() {
         let named = |row: &&str| row.starts_with(&format!("{scenario},"));
         let row = table.lines().filter(of_pair).find(named).expect("a row of the table");
         assert_eq!(number(row.split(',').nth(4).expect("a limit")), limit, "{line}");
-        // A limit is at most twice the error, so no other error can be larger than the largest
+        // A limit is at most twice the error, so the largest error is at least half of the largest
         // limit.
         let largest = table
             .lines()

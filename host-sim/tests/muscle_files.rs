@@ -20,27 +20,27 @@ fn refused(text: &str, words: &[&str]) {
     }
 }
 
-/// The file with the line of the mass replaced.
+/// The muscle file with the line of the mass replaced.
 fn with(line: &str) -> String {
     MUSCLE.replacen("mass_g = 97.5", line, 1)
 }
 
 #[test]
-fn a_maximal_force_stands_in_place_of_the_mass() {
+fn a_maximal_force_may_replace_the_mass() {
     let by_mass = muscle(MUSCLE);
     let by_force = muscle(&with(&format!("max_isometric_force_n = {}", by_mass.f0())));
     assert!((by_force.mass / by_mass.mass - 1.0).abs() < 1e-14);
     assert!((by_force.f0() / by_mass.f0() - 1.0).abs() < 1e-14);
     let strong = muscle(&with("max_isometric_force_n = 532"));
     assert!((strong.f0() - 532.0).abs() < 1e-9);
-    // With the elements that the file has.
+    // Specific tension is the file's.
     let tense = with("max_isometric_force_n = 532\nelements.specific_tension_n_per_cm2 = 20");
     let tense = muscle(&tense);
     assert!((tense.f0() - 532.0).abs() < 1e-9 && tense.mass > 1.5 * strong.mass, "{tense:?}");
 }
 
 #[test]
-fn exactly_one_of_mass_and_force_is_taken() {
+fn exactly_one_of_mass_and_force_is_required() {
     let both = ["mass_g", "max_isometric_force_n", "exactly one"];
     refused(&with("mass_g = 97.5\nmax_isometric_force_n = 266"), &both);
     refused(&with(""), &both);
@@ -48,7 +48,7 @@ fn exactly_one_of_mass_and_force_is_taken() {
         let file = with(&format!("max_isometric_force_n = {value}"));
         refused(&file, &["m.toml, line 3: max_isometric_force_n = ", "mass"]);
     }
-    // What is wrong is named, not what follows from it.
+    // The error names the cause, not a consequence.
     let file = with("max_isometric_force_n = 266\nelements.density_g_per_cm3 = 0");
     refused(&file, &["elements.density_g_per_cm3 = 0", "between 0.5 and 2"]);
     let file = with("max_isometric_force_n = 266").replace("_cm = 11.0", "_cm = -1");
@@ -62,7 +62,7 @@ fn every_element_is_overridden_by_name() {
     let columns = coefficients::element_columns();
     assert_eq!(columns.len(), 12);
     for column in &columns {
-        // 1 % more of it, and the reference and the model have it.
+        // 1 % more, both in the reference and in the model.
         let changed = 1.01 * row[column];
         let after = muscle(&format!("{MUSCLE}\n[elements]\n{column} = {changed}\n")).elements;
         let fields = |e: &host_sim::reference::Elements| {
@@ -91,7 +91,7 @@ fn every_element_is_overridden_by_name() {
 }
 
 #[test]
-fn an_element_of_the_users_own_counts_in_the_reference_as_in_the_model() {
+fn a_custom_element_has_the_same_effect_in_reference_and_model() {
     let stiff = format!("{MUSCLE}\n[elements]\ncT = 20\neta = 0.02\n");
     let input = Input { activation: 0.6, path_length: 0.165, stimulation_frequency: 30.0 };
     let rest = Input { activation: 0.0, ..input };
@@ -110,7 +110,7 @@ fn an_element_of_the_users_own_counts_in_the_reference_as_in_the_model() {
 }
 
 #[test]
-fn an_element_that_cannot_be_is_refused_by_file_line_key_and_limit() {
+fn an_invalid_element_is_refused_with_file_line_key_and_limit() {
     let with = |line: &str| format!("{MUSCLE}\n[elements]\n{line}\n");
     let line = format!("m.toml, line {}: elements.", MUSCLE.lines().count() + 3);
     let unknown: Vec<String> = coefficients::element_columns();

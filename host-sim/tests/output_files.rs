@@ -1,5 +1,5 @@
-//! What commands write: a file that is there keeps its permissions, links are followed, and nothing
-//! else is left.
+//! Output files: an existing file keeps its permissions, links are followed, and no temporary file
+//! is left.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 
 const INPUT: &str = "t_s,activation,path_length_m,stim_hz\n0,0.5,0.16,0\n0.001,0.5,0.16,0\n";
 
-/// A folder with what commands read.
+/// A folder with the input files of the commands.
 struct Bench(tempfile::TempDir);
 
 impl Bench {
@@ -25,7 +25,7 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    /// A command of `vm`, in this folder, under an umask.
+    /// Runs a command of `vm` in this folder with an umask.
     fn vm(&self, umask: &str, command: &str) -> Output {
         let script = format!("umask {umask} && exec \"$0\" {command}");
         Command::new("sh")
@@ -60,9 +60,9 @@ fn give(path: &Path, mode: u32) {
 const RUN: &str = "run --muscle m.toml --input in.csv --mode continuous --arithmetic f32 --output";
 const SWEEP: &str = "sweep --vary mass_g=100 --vary tick_ms=2 --output";
 
-/// Each command that writes one file, and its like; `report` and `figures` are in their own tests.
+/// The commands that write files; `report` and `figures` have their own tests.
 #[test]
-fn a_file_that_is_replaced_keeps_its_permissions_whichever_command_replaces_it() {
+fn a_replaced_file_keeps_its_permissions() {
     let bench = Bench::new();
     bench.done("022", &format!("{RUN} run.csv"));
     for (command, name) in [
@@ -71,11 +71,11 @@ fn a_file_that_is_replaced_keeps_its_permissions_whichever_command_replaces_it()
         ("plot --run run.csv --output", "plot.svg"),
         (SWEEP, "sweep.csv"),
     ] {
-        // A new one: what the umask leaves.
+        // A new file has the permissions that the umask leaves.
         bench.done("027", &format!("{command} {name}"));
         assert_eq!(mode(&bench.path(name)), 0o640, "{command}");
         for kept in [0o664, 0o600, 0o604, 0o755] {
-            // A table of a sweep is gone on with; all else is written whatever is there.
+            // The table of a sweep is resumed; all other files are replaced.
             if command != SWEEP {
                 fs::write(bench.path(name), "as it was").expect("a file");
             }
@@ -86,18 +86,18 @@ fn a_file_that_is_replaced_keeps_its_permissions_whichever_command_replaces_it()
                 assert_eq!(mode(&bench.path(name)), kept, "{command}, umask {umask}");
             }
             assert!(bench.is_new(name), "{command}");
-            assert_eq!(bench.files(), files, "{command}: a file is left behind");
+            assert_eq!(bench.files(), files, "{command}: a temporary file is left");
         }
     }
 }
 
 #[test]
-fn links_are_followed_whether_they_lead_to_a_file_or_to_where_one_will_be() {
+fn links_to_existing_and_new_files_are_followed() {
     let bench = Bench::new();
     fs::create_dir(bench.path("far")).expect("a folder");
     fs::write(bench.path("far/there.csv"), "as it was").expect("a file");
     give(&bench.path("far/there.csv"), 0o664);
-    // Relative to where the link is, and a link to a link.
+    // A relative link, a link to a link, and a dangling one.
     symlink("far/there.csv", bench.path("link.csv")).expect("a link");
     symlink("link.csv", bench.path("second.csv")).expect("a link");
     symlink("far/new.csv", bench.path("dangling.csv")).expect("a link");
@@ -111,12 +111,12 @@ fn links_are_followed_whether_they_lead_to_a_file_or_to_where_one_will_be() {
         ("dangling.csv", "far/new.csv", 0o644),
     ] {
         bench.done("022", &format!("{RUN} {name}"));
-        assert!(is_link(name), "{name} is no link any more");
+        assert!(is_link(name), "{name} was replaced by a file");
         assert!(bench.is_new(target), "{target}");
         assert_eq!(mode(&bench.path(target)), expected, "{target}");
     }
     assert!(is_link("link.csv"));
-    // One that leads nowhere is named.
+    // A circular link is named.
     let output = bench.vm("022", &format!("{RUN} round.csv"));
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -124,9 +124,9 @@ fn links_are_followed_whether_they_lead_to_a_file_or_to_where_one_will_be() {
     assert!(is_link("round.csv"));
 }
 
-/// What is no regular file is written as it is.
+/// Pipes and devices are written directly.
 #[test]
-fn a_pipe_and_a_device_are_written_to() {
+fn pipes_and_devices_are_written_directly() {
     let bench = Bench::new();
     bench.done("022", &format!("{RUN} /dev/stdout > piped.csv"));
     let output = bench.vm("022", &format!("{RUN} /dev/stdout"));
@@ -138,11 +138,10 @@ fn a_pipe_and_a_device_are_written_to() {
     assert!(message.contains("/dev/full: "), "{message}");
 }
 
-/// The file beside its place is nobody's business: where it cannot be made, the one that was asked
-/// for is named.
+/// If the temporary file cannot be created, the error names the requested file.
 #[cfg(target_os = "linux")]
 #[test]
-fn an_error_names_the_file_that_was_asked_for_and_no_other() {
+fn an_error_names_the_requested_file() {
     let bench = Bench::new();
     let output = bench.vm("022", &format!("{RUN} /proc/out.csv"));
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -151,11 +150,10 @@ fn an_error_names_the_file_that_was_asked_for_and_no_other() {
     assert!(!message.contains(".tmp"), "{message}");
 }
 
-/// All output goes through one function: nothing else in this package writes a file but what is
-/// read again by a program that it starts (in folders that are removed), and the table of a sweep,
-/// row by row.
+/// All output goes through one function, except files for programs that are started (in temporary
+/// folders) and the table of a sweep, which grows row by row.
 #[test]
-fn nothing_writes_files_but_one_function() {
+fn all_output_goes_through_one_function() {
     fn look(folder: &Path, found: &mut Vec<String>) {
         for entry in fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();

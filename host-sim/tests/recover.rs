@@ -1,5 +1,5 @@
-//! `vm protocol` and `vm recover`: the protocol can be played and is short, and muscles that are
-//! known are recovered.
+//! `vm protocol` and `vm recover`: the protocol is valid and short, and the parameters of synthetic
+//! patients are recovered.
 
 use host_sim::engine::{self, Arithmetic};
 use host_sim::fit::{Role, Search, Start};
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Three minutes of stimulation are what a patient is asked for, s.
+/// Limit of stimulation time per patient, s.
 const LONGEST: f64 = 180.0;
 
 fn start() -> Start {
@@ -26,7 +26,7 @@ fn vm(arguments: &[&str], folder: &Path) -> Output {
 }
 
 #[test]
-fn a_protocol_is_played_as_it_is_written_and_asks_for_less_than_three_minutes() {
+fn a_protocol_can_be_run_and_takes_less_than_three_minutes() {
     let folder = tempfile::tempdir().expect("a folder");
     for (mode, name) in [(Mode::Fes, "fes"), (Mode::Continuous, "continuous")] {
         let done = vm(&["protocol", "--mode", name, "--out", name], folder.path());
@@ -45,7 +45,7 @@ fn a_protocol_is_played_as_it_is_written_and_asks_for_less_than_three_minutes() 
                 assert_eq!(engine::status_names(flags), "ok", "{name} {}", bout.name);
             }
         }
-        // The list is complete but for the recordings.
+        // The list lacks only the recordings.
         fs::write(folder.path().join("m.toml"), recover::MUSCLE).expect("a file");
         let trials = format!("{name}/trials.toml");
         let fit = ["fit", "--muscle", "m.toml", "--trials", &trials, "--out", "fitted.toml"];
@@ -57,7 +57,7 @@ fn a_protocol_is_played_as_it_is_written_and_asks_for_less_than_three_minutes() 
 }
 
 #[test]
-fn fes_is_asked_for_at_5_to_80_pps_and_at_three_lengths() {
+fn the_fes_protocol_covers_5_to_80_pps_and_three_lengths() {
     let bouts = recover::bouts(Mode::Fes, true);
     let fitted = || bouts.iter().filter(|bout| bout.role == Role::Fit);
     let extreme = |of: &dyn Fn(&Bout) -> Vec<f64>| {
@@ -75,10 +75,9 @@ fn fes_is_asked_for_at_5_to_80_pps_and_at_three_lengths() {
     assert!(!recover::bouts(Mode::Fes, false).iter().any(|bout| bout.name == "fatigue"));
 }
 
-/// Two patients of each mode: what is asked for of a hundred (docs/fitting.md), of as many as fit
-/// in a test.
+/// The requirements on a hundred patients (docs/fitting.md), for two per mode.
 #[test]
-fn patients_are_recovered_and_their_unseen_force_is_predicted() {
+fn parameters_are_recovered_and_unseen_force_is_predicted() {
     let modes = vec![Mode::Fes, Mode::Continuous];
     let study = Study { start: start(), patients: 2, modes, search: Search { starts: 1, seed: 1 } };
     let folder = tempfile::tempdir().expect("a folder");
@@ -87,15 +86,15 @@ fn patients_are_recovered_and_their_unseen_force_is_predicted() {
     let found = summaries(&study, &ledger);
     for summary in &found {
         assert_eq!(summary.failed, 0, "{summary:?}");
-        // The aim of 95 in 100 is one of all here.
+        // 95 of 100 means all of two.
         assert!(summary.predicts(), "{summary:?}");
     }
     let (covered, intervals) = found
         .iter()
         .flat_map(|summary| &summary.parameters)
         .fold((0, 0), |(covered, intervals), p| (covered + p.covered, intervals + p.intervals));
-    // Of 56 intervals at 95 %, were they independent, 3 miss on the average, and 10 or more once in
-    // 2,000 times.
+    // Of 56 independent 95 % intervals 3 miss on average, and 10 or more with a probability of
+    // 1/2,000.
     assert!(intervals >= 50 && covered + 9 >= intervals, "{covered} of {intervals}");
 
     // Interrupted before the last patient and resumed: the same bytes.
@@ -105,7 +104,7 @@ fn patients_are_recovered_and_their_unseen_force_is_predicted() {
     fs::write(&table, &cut).expect("a shorter table");
     study.run(&table).expect("gone on with");
     assert_eq!(fs::read_to_string(&table).expect("the table"), whole);
-    // And not by another study.
+    // Another study does not resume it.
     let other = Study { search: Search { starts: 1, seed: 2 }, ..study };
     let refused = other.run(&table).expect_err("other patients").to_string();
     assert!(refused.contains("not a table of this run"), "{refused}");

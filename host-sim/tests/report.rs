@@ -1,4 +1,4 @@
-//! `vm report`: one page with everything in it, that needs nothing from anywhere else.
+//! `vm report`: a complete and self-contained page.
 
 use std::fs;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn report(out: &Path, cycles: &Path) -> Output {
 }
 
 #[test]
-fn the_page_has_everything_in_it() {
+fn the_page_is_complete() {
     let folder = tempfile::tempdir().expect("a folder");
     let (out, cycles) = (folder.path().join("report.html"), folder.path().join("cycles.json"));
     fs::write(&cycles, CYCLES).expect("a file");
@@ -46,7 +46,7 @@ fn the_page_has_everything_in_it() {
     }
     let page = fs::read_to_string(&out).expect("a page");
 
-    // Nothing is fetched, and nothing runs.
+    // No external resources and no scripts.
     let names_svg = r#"xmlns="http://www.w3.org/2000/svg""#;
     let without_names = page.replace(names_svg, "");
     for foreign in ["http:", "https:", "//cdn", "<script", "<link", "<img", "@import", "url("] {
@@ -55,7 +55,7 @@ fn the_page_has_everything_in_it() {
     assert!(page.starts_with("<!doctype html>") && page.contains("prefers-color-scheme: dark"));
     assert!(page.contains(r#"name="viewport" content="width=device-width"#));
 
-    // Of every tag as many are closed as opened.
+    // Every opened tag is closed.
     for tag in ["table", "tr", "td", "th", "details", "div", "p", "svg", "ul", "li", "h2", "h3"] {
         let opened =
             page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
@@ -72,12 +72,12 @@ fn the_page_has_everything_in_it() {
         assert!(page.contains(label), "{label}");
     }
     assert!(page.matches(">fixed</text>").count() >= scenarios, "legends");
-    // Each with its inputs.
+    // Each plot has its inputs.
     for input in [">U (1)</text>", ">L_mt (cm)</text>"] {
         assert!(page.matches(input).count() >= scenarios, "{input}");
     }
 
-    // When, from what and on what it was made.
+    // Date, version, commit and machine.
     let commit = Command::new("git")
         .args(["-C", env!("CARGO_MANIFEST_DIR"), "rev-parse", "--short=12", "HEAD"])
         .output()
@@ -97,7 +97,7 @@ fn the_page_has_everything_in_it() {
     }
     cards(&page);
 
-    // The numbers are those of the other commands.
+    // The numbers equal those of the other commands.
     let golden = include_str!("../data/golden.toml");
     for line in golden.lines().filter(|line| line.starts_with('"')) {
         let (name, bits) = line.split_once(" = ").expect("a checksum");
@@ -115,7 +115,7 @@ fn the_page_has_everything_in_it() {
     assert!(page.contains("are the committed ones"));
 }
 
-/// What the page says first, and whether it says it as a fault.
+/// The cards at the top of the page, and whether they are marked as bad.
 fn cards(page: &str) {
     let list =
         page.split("<ul class=\"facts\">").nth(1).and_then(|rest| rest.split("</ul>").next());
@@ -125,19 +125,19 @@ fn cards(page: &str) {
         let found = cards.iter().find(|card| card.contains(words));
         *found.unwrap_or_else(|| panic!("no \"{words}\" in {cards:#?}"))
     };
-    // The largest error is the largest of all scenarios, with its limit, name and mode.
+    // The largest error over all scenarios, with limit, name and mode.
     let all = card("largest error in f32 at 1 kHz, all scenarios");
     assert!(all.contains("fast_ramps_kinks, continuous") && all.contains("limit 1 %"), "{all}");
     let others = card("largest error in f32 at 1 kHz, where the tendon does not ring");
     assert!(others.contains("limit 0.2 %"), "{others}");
     card("largest error in fixed at 1 kHz, all scenarios");
-    // A claim that does not hold is seen in its card.
+    // The card of the claims is bad if a claim fails.
     let claims = card("claims of the paper reproduced");
     let (found, all) =
         claims.split(['>', '<']).find_map(|text| text.split_once(" of ")).expect("a count");
     assert_eq!(claims.contains("bad"), found != all, "{claims}");
     assert!(found != all && all == "10", "{claims}");
-    // Bytes of state are those of the table of cycles.
+    // State sizes equal those of the table of cycles.
     let budgets = include_str!("../data/budgets.toml");
     for (case, bytes) in [("continuous-f32", 84), ("continuous-fixed", 120)] {
         assert!(budgets.contains(&format!("[core.cortex-m4f.{case}]")));
@@ -149,7 +149,7 @@ fn cards(page: &str) {
 }
 
 #[test]
-fn what_is_no_table_of_cycles_is_refused_before_anything_is_measured() {
+fn an_invalid_file_of_cycles_is_refused_before_measuring() {
     let folder = tempfile::tempdir().expect("a folder");
     let (out, cycles) = (folder.path().join("report.html"), folder.path().join("cycles.json"));
     for text in ["", "{}", r#"[{"case": "continuous-f32"}]"#] {

@@ -1,4 +1,4 @@
-//! `vm run` as a user meets it: it says what happened, has defaults, reads and writes pipes.
+//! `vm run`: summary, defaults and pipes.
 
 use std::fs;
 use std::io::Write;
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 const MUSCLE: &str = include_str!("../data/muscles/deltoid_posterior.toml");
-/// One tick with an activation beyond 1, two with a path beyond the muscle's longest.
+/// One tick with an activation above 1, two with a path beyond the validity range.
 const INPUT: &str = "t_s,activation,path_length_m,stim_hz\n0,0,0.16,0\n0.001,1.5,0.16,0\n\
                      0.002,0.5,0.3,0\n0.003,0.5,0.3,0\n0.004,0.5,0.16,0\n";
 
@@ -30,7 +30,7 @@ fn done(folder: &Path, arguments: &str) -> Output {
 }
 
 #[test]
-fn a_run_says_peak_force_range_of_length_and_flagged_ticks_on_standard_error() {
+fn a_run_prints_peak_force_length_range_and_flagged_ticks_to_standard_error() {
     let folder = folder();
     let output = done(folder.path(), "run --muscle m.toml --input in.csv --output out.csv");
     assert!(output.stdout.is_empty());
@@ -52,7 +52,7 @@ fn a_run_says_peak_force_range_of_length_and_flagged_ticks_on_standard_error() {
     ] {
         assert!(said.contains(&words), "no \"{words}\" in: {said}");
     }
-    // Nothing flagged is said, too; the reference checks nothing.
+    // The summary also states that no tick was flagged, and that the reference has no flags.
     let calm = INPUT.replace("1.5", "1").replace("0.3", "0.16");
     fs::write(folder.path().join("in.csv"), calm).expect("inputs");
     let output = done(folder.path(), "run --muscle m.toml --input in.csv");
@@ -83,7 +83,7 @@ fn the_class_is_the_files_or_the_command_lines() {
 }
 
 #[test]
-fn a_run_needs_no_mode_no_arithmetic_and_no_output() {
+fn mode_arithmetic_and_output_have_defaults() {
     let folder = folder();
     done(folder.path(), "run --muscle m.toml --input in.csv");
     let explicit =
@@ -94,7 +94,7 @@ fn a_run_needs_no_mode_no_arithmetic_and_no_output() {
 }
 
 #[test]
-fn a_dash_is_standard_input_and_output() {
+fn a_dash_means_standard_input_or_output() {
     let folder = folder();
     done(folder.path(), "run --muscle m.toml --input in.csv --output out.csv");
     let mut child = vm(folder.path(), "run --muscle m.toml --input - --output -")
@@ -109,7 +109,7 @@ fn a_dash_is_standard_input_and_output() {
     assert!(output.stdout == fs::read(folder.path().join("out.csv")).expect("an output"));
     assert!(String::from_utf8_lossy(&output.stderr).contains("peak force"));
     assert!(!folder.path().join("-").exists());
-    // In messages it has a name.
+    // Error messages call it standard input.
     let mut child = vm(folder.path(), "run --muscle m.toml --input - --output -")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -121,17 +121,17 @@ fn a_dash_is_standard_input_and_output() {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("standard input, line 1, column activation"), "{message}");
-    // A plot of it goes into a pipe as well.
+    // A plot can be piped as well.
     let plot = done(folder.path(), "plot --run out.csv --input in.csv --output -");
     assert!(String::from_utf8_lossy(&plot.stdout).starts_with("<svg"));
 }
 
-/// As `vm ... | head -1`: whoever reads no more has had enough, and that is no error.
+/// As `vm ... | head -1`: a closed pipe is no error.
 #[cfg(unix)]
 #[test]
 fn a_broken_pipe_is_silent() {
     let folder = folder();
-    // Far more than a pipe holds.
+    // More than the capacity of a pipe.
     let row = |tick: usize| format!("{},0.5,0.16,0\n", tick as f64 * 1e-3);
     let long: String = (0..20_000).map(row).collect();
     let header = "t_s,activation,path_length_m,stim_hz\n";
@@ -156,7 +156,7 @@ fn a_broken_pipe_is_silent() {
 }
 
 #[test]
-fn a_picture_that_is_not_svg_and_a_page_that_is_not_html_are_refused_by_name() {
+fn pictures_other_than_svg_and_pages_other_than_html_are_refused() {
     let folder = folder();
     done(folder.path(), "run --muscle m.toml --input in.csv");
     for (arguments, words) in [
@@ -171,17 +171,16 @@ fn a_picture_that_is_not_svg_and_a_page_that_is_not_html_are_refused_by_name() {
             assert!(message.contains(word), "no \"{word}\" in: {message}");
         }
     }
-    // Without an output, a file that is named after what it shows.
+    // The default output has the name of the plotted file.
     done(folder.path(), "plot --run run.csv");
     assert!(folder.path().join("run.svg").exists());
     assert!(!folder.path().join("run.png").exists());
 }
 
-/// Where no temporary file can be made, the folder that was to have it is named, and no random
-/// name.
+/// If no temporary file can be created, the error names the folder and no random name.
 #[cfg(unix)]
 #[test]
-fn names_of_temporary_files_are_in_no_error() {
+fn errors_do_not_name_temporary_files() {
     let folder = folder();
     for arguments in [
         "cycles --case continuous-f32 --tick 0",
@@ -196,7 +195,7 @@ fn names_of_temporary_files_are_in_no_error() {
     }
 }
 
-/// Every file that a command makes of its own accord is ignored by git.
+/// Default output files of all commands are ignored by git.
 #[test]
 fn default_outputs_are_ignored_by_git() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -219,7 +218,7 @@ fn default_outputs_are_ignored_by_git() {
 }
 
 #[test]
-fn help_lists_the_keys_of_a_sweep_and_only_the_modes_that_hil_takes() {
+fn help_lists_the_keys_of_sweep_and_the_modes_of_hil() {
     let folder = folder();
     let help = |command: &str| {
         let output = done(folder.path(), &format!("{command} --help"));

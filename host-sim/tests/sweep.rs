@@ -1,12 +1,12 @@
-//! `vm sweep`: what is interrupted is gone on with, nothing lost and nothing doubled, and every
-//! case can be replayed.
+//! `vm sweep`: an interrupted sweep is resumed without lost or duplicate rows, and every case can
+//! be replayed.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-/// Twelve quick cases; fixed point refuses a third of them.
+/// Twelve fast cases; fixed point refuses a third of them.
 const GRID: [&str; 8] = [
     "--vary",
     "mass_g=10,100",
@@ -56,7 +56,7 @@ impl Folder {
 }
 
 #[test]
-fn a_table_cut_anywhere_is_completed_to_the_same_bytes() {
+fn a_table_truncated_anywhere_is_completed_to_the_same_bytes() {
     let folder = Folder::new();
     let output = folder.path("whole.csv");
     let listed = swept(&GRID, &output);
@@ -64,7 +64,7 @@ fn a_table_cut_anywhere_is_completed_to_the_same_bytes() {
     let whole = fs::read(&output).expect("a table");
     let lines = whole.iter().filter(|&&byte| byte == b'\n').count();
     assert_eq!(lines, 2 + 12);
-    // In the first lines, at ends of lines and beside them, and within rows.
+    // Within the header, at and next to line ends, and within rows.
     let ends: Vec<usize> = (0..whole.len()).filter(|&at| whole[at] == b'\n').collect();
     let mut cuts = vec![0, 1, 20, ends[0], ends[0] + 1, ends[0] + 30, ends[1], ends[1] + 1];
     cuts.extend(ends[2..].iter().step_by(3).flat_map(|&end| [end - 40, end, end + 1, end + 2]));
@@ -77,7 +77,7 @@ fn a_table_cut_anywhere_is_completed_to_the_same_bytes() {
 }
 
 #[test]
-fn a_killed_sweep_goes_on_where_it_was() {
+fn a_killed_sweep_is_resumed() {
     let folder = Folder::new();
     let (whole, killed) = (folder.path("whole.csv"), folder.path("killed.csv"));
     let arguments = ["--random", "24", "--seed", "7", "--modes", "continuous"];
@@ -96,7 +96,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
             std::thread::sleep(Duration::from_millis(2));
         }
         kills += usize::from(child.try_wait().expect("a child").is_none());
-        // Where it is done already, there is nothing to kill.
+        // It may have finished already.
         let _done = child.kill();
         child.wait().expect("a child");
     }
@@ -106,7 +106,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
 }
 
 #[test]
-fn a_replayed_case_has_the_error_of_its_row() {
+fn a_replayed_case_reproduces_the_error_of_its_row() {
     error_of_a_replay("standard");
     error_of_a_replay("economy");
 }
@@ -129,7 +129,7 @@ fn error_of_a_replay(class: &str) {
     assert!(replayed.status.success(), "{}", String::from_utf8_lossy(&replayed.stderr));
     let told = String::from_utf8_lossy(&replayed.stdout).into_owned();
     assert!(told.contains(&format!("f32: max {expected:.6} %")), "{expected} in {told}");
-    // The files make the same error with `vm run`.
+    // `vm run` with the case's files has the same error.
     let forces = |arithmetic: &str| -> Vec<f64> {
         let out = folder.path(arithmetic);
         let run = Command::new(env!("CARGO_BIN_EXE_vm"))
@@ -153,12 +153,12 @@ fn error_of_a_replay(class: &str) {
     let mass: f64 = row[2].parse().expect("g");
     let fascicle: f64 = row[3].parse().expect("cm");
     let f0 = 31.8 * mass / (1.06 * fascicle);
-    // The error is told to six digits behind the point, forces to nine digits.
+    // The error is printed with six decimals, forces with nine digits.
     assert!((100.0 * largest / f0 - expected).abs() < 1e-5, "{largest} N of {f0} N");
 }
 
 #[test]
-fn what_is_not_this_sweeps_table_is_not_touched() {
+fn a_file_that_is_not_this_sweeps_table_is_left_unchanged() {
     let folder = Folder::new();
     let output = folder.path("sweep.csv");
     for (text, words) in [
@@ -188,11 +188,11 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
         assert_eq!(fs::read_to_string(&output).expect("a file"), spoilt);
     }
     fs::write(&output, &text).expect("a file");
-    // Numbers are the same however they are written.
+    // Equal numbers in another notation are accepted.
     fs::write(&output, &text).expect("a file");
     swept(&["--vary", "tick_ms= 2.0", "--modes", "fes"], &output);
     assert_eq!(fs::read_to_string(&output).expect("a file"), text);
-    // Of another model.
+    // A table of another version of the model.
     let other = text.replacen("golden bits ", "golden bits 0", 1);
     fs::write(&output, other).expect("a file");
     refused(&grid, &output, &["not a table of this run"]);
@@ -203,7 +203,7 @@ fn what_is_not_this_sweeps_table_is_not_touched() {
 }
 
 #[test]
-fn what_cannot_vary_is_named() {
+fn invalid_variations_are_refused() {
     let folder = Folder::new();
     let output = folder.path("sweep.csv");
     for (arguments, words) in [
