@@ -140,10 +140,16 @@ fn real_muscle_is_predicted_as_well_as_by_published_models() {
         assert_eq!(row.role, Role::Predict.name());
         assert!(row.mae_pct_f0 <= most, "{row:?}");
     }
-    // Residual force enhancement after a stretch, which the model lacks.
-    let of_9_mm =
-        board.enhancements.iter().filter(|left| ["65", "50"].contains(&left.trial.as_str()));
+    // Residual force enhancement after a stretch, which the model lacks: less than a tenth of it is
+    // left of the transient that the model does have.
+    let of_9_mm: Vec<_> = board
+        .enhancements
+        .iter()
+        .filter(|left| ["65", "50"].contains(&left.trial.as_str()))
+        .collect();
+    assert_eq!(of_9_mm.len(), 2);
     for left in of_9_mm {
-        assert!(left.measured_pct_f0 > 5.0 && left.model_pct_f0.abs() < 1.0, "{left:?}");
+        assert!(left.measured_pct_f0 > 5.0, "{left:?}");
+        assert!(left.model_pct_f0.abs() < 0.1 * left.measured_pct_f0, "{left:?}");
     }
 }
