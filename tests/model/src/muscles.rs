@@ -1,4 +1,4 @@
-//! Muscles, time steps and settings that the property tests share.
+//! Muscles, time steps and settings shared by the property tests.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -11,7 +11,7 @@ use vm_nostd::{
 /// Fibre types of these muscles.
 pub const TYPES: usize = 2;
 
-/// A mode that the property tests drive muscles in.
+/// A recruitment mode of the property tests.
 pub trait Mode<S: Scalar>: Recruitment<S, TYPES> {
     /// Data of a muscle besides its parameters.
     fn units(params: &MuscleParams<TYPES>) -> Self::Units;
@@ -25,7 +25,7 @@ impl<S: Scalar> Mode<S> for IntramuscularFes {
     fn units(_: &MuscleParams<TYPES>) {}
 }
 
-/// Seven motor units in a muscle that has room for eight.
+/// Seven motor units, with a capacity of eight.
 pub type Discrete<A> = NaturalDiscrete<A, 8>;
 
 impl<S: Scalar, A: ActingLength<S>> Mode<S> for Discrete<A> {
@@ -44,8 +44,7 @@ pub fn built<S: Scalar, R: Mode<S>>(
     Muscle::build_with_units(params, &units, step).expect("a valid muscle")
 }
 
-/// Always the same cases, so that a failure is of the change and not of chance; another seed with
-/// PROPTEST_RNG_SEED, more cases by the number below.
+/// A fixed seed, so that a failure is due to the change under test; PROPTEST_RNG_SEED sets another.
 pub fn config(cases: u32) -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
@@ -55,7 +54,7 @@ pub fn config(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, rng_seed, failure_persistence: None, ..default }
 }
 
-/// A slow and a fast type of one set, each varied a little.
+/// A slow and a fast type of one set with small variations.
 fn types() -> impl Strategy<Value = (ElementParams, [FiberType; TYPES])> {
     let sets = prop_oneof![
         Just((paper_table_1::ELEMENTS, [paper_table_1::SLOW, paper_table_1::FAST])),
@@ -94,14 +93,14 @@ pub fn muscles() -> impl Strategy<Value = MuscleParams<TYPES>> {
                     FiberParams { fraction: 1.0 - fraction, fiber_type: types[1] },
                 ],
             };
-            // The longest path that lets the passive fascicles reach `longest`.
+            // The longest path at which passive fascicles reach the length `longest`.
             params.max_path_length += (longest - params.maximum_fascicle_length()) * fascicle;
             params
         })
         .prop_filter("a valid muscle", |params| params.validate().is_ok())
 }
 
-/// Time steps of all lengths allowed.
+/// Time steps over the whole allowed range.
 pub fn steps() -> impl Strategy<Value = TimeStep> {
     (1e-4..2e-3_f64).prop_map(|seconds| TimeStep::from_seconds(seconds).expect("in range"))
 }

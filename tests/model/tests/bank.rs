@@ -1,4 +1,4 @@
-//! A bank gives the same bits as its muscles alone.
+//! A bank computes the same bits as its muscles do separately.
 
 use firmware::{Arithmetic, Inputs, MUSCLE, Scenario};
 use vm_nostd::{
@@ -16,7 +16,7 @@ fn at_rest<S: Arithmetic, R: Recruitment<S, 2, Units = ()>>(
     (muscle, state)
 }
 
-fn mixed_modes_are_stepped_as_alone<S: Arithmetic>() {
+fn compare_with_single_muscles<S: Arithmetic>() {
     let mut bank = Bank::<S, 2, CAPACITY>::new();
     let (continuous, mut continuous_state) = at_rest(0.16);
     let (fes, mut fes_state) = at_rest(0.165);
@@ -38,13 +38,13 @@ fn mixed_modes_are_stepped_as_alone<S: Arithmetic>() {
 }
 
 #[test]
-fn mixed_modes_are_stepped_as_alone_in_both_arithmetics() {
-    mixed_modes_are_stepped_as_alone::<f32>();
-    mixed_modes_are_stepped_as_alone::<Fixed>();
+fn a_bank_of_mixed_modes_has_the_bits_of_single_muscles() {
+    compare_with_single_muscles::<f32>();
+    compare_with_single_muscles::<Fixed>();
 }
 
 #[test]
-fn a_full_bank_refuses_another_muscle_and_keeps_those_it_has() {
+fn a_full_bank_refuses_another_muscle_and_is_unchanged() {
     let mut bank = Bank::<Fixed, 2, CAPACITY>::new();
     let (muscle, state) = at_rest(0.16);
     for place in 0..CAPACITY {

@@ -1,9 +1,9 @@
 //! Golden bits of every mode, arithmetic and kind of muscle.
 //!
-//! `golden.toml` of host-sim holds the bits of the published scenarios; this needs no host, and
-//! goes where those do not: to paths that jump, inputs that are no numbers, and short ticks.
-//! Written by `VM_WRITE=1 cargo test --release -p model-tests --test bits`, which without
-//! `VM_WRITE` compares.
+//! `golden.toml` of host-sim holds the bits of the published scenarios. These tests do not need
+//! host-sim and cover what those do not: jumping paths, NaN inputs and other time steps.
+//! `VM_WRITE=1 cargo test --release -p model-tests --test bits` writes the bits; without `VM_WRITE`
+//! they are compared.
 
 use firmware::{Inputs, MUSCLE, Scenario};
 use model_tests::muscles::{Discrete, Mode, built};
@@ -14,10 +14,10 @@ use vm_nostd::{
     MuscleParams, NaturalContinuous, Scalar, TimeStep, feline_vm4, human_vm4,
 };
 
-/// Ticks of each run: several steps of activation and frequency, and mishaps.
+/// Ticks of each run: several steps of activation and frequency, and invalid inputs.
 const TICKS: u32 = 3_000;
 
-/// A long tendon, of human types.
+/// A muscle of human fibre types with a long tendon.
 const LONG_TENDON: MuscleParams<2> = MuscleParams {
     mass: 0.02,
     fascicle_length: 0.06,
@@ -32,7 +32,7 @@ const LONG_TENDON: MuscleParams<2> = MuscleParams {
     ],
 };
 
-/// Light, and of cats.
+/// A light muscle of feline fibre types.
 const FELINE: MuscleParams<2> = MuscleParams {
     mass: 0.01,
     fascicle_length: 0.04,
@@ -47,7 +47,7 @@ const FELINE: MuscleParams<2> = MuscleParams {
     ],
 };
 
-/// FNV-1a of words.
+/// FNV-1a checksum of words.
 struct Sum(u64);
 
 impl Sum {
@@ -58,7 +58,7 @@ impl Sum {
     }
 }
 
-/// All bits that a run leaves.
+/// Checksum of all states and outputs of a run.
 fn bits<S: Scalar, R: Mode<S>>(params: &MuscleParams<2>, seconds: f64, natural: usize) -> u64 {
     let step = TimeStep::from_seconds(seconds).expect("a step");
     let muscle = built::<S, R>(params, step);
@@ -67,8 +67,8 @@ fn bits<S: Scalar, R: Mode<S>>(params: &MuscleParams<2>, seconds: f64, natural: 
     let mut sum = Sum(0xcbf2_9ce4_8422_2325);
     for tick in 0..TICKS {
         let input: Input<f64> = Scenario.inputs(tick)[natural];
-        // The scenario's path is the paper's muscle's: from 0.12 to 0.2 m here, its range of this
-        // one, and beyond.
+        // The scenario's path is that of the paper's muscle, 0.12 to 0.2 m; scaled to the range of
+        // this muscle and beyond.
         let share = (input.path_length - 0.13) / 0.06;
         let jump = if tick % 700 < 350 { 0.0 } else { 0.1 };
         let path = shortest + (share + jump) * (longest - shortest);
@@ -107,7 +107,7 @@ fn rows<S: Scalar>(arithmetic: &str) -> String {
 }
 
 #[test]
-fn every_bit_is_as_it_was() {
+fn all_bits_are_unchanged() {
     let found = [rows::<f32>("f32"), rows::<f64>("f64"), rows::<Fixed>("fixed")].concat();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("bits.txt");
     if std::env::var_os("VM_WRITE").is_some() {

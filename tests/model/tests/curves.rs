@@ -3,10 +3,10 @@
 use firmware::MUSCLE;
 use vm_nostd::{ContinuousMuscle, FiberType, Fixed, Scalar, TimeStep};
 
-/// Largest errors in `f32`, in fixed point and in `f64`: those of the README's table of error
-/// bounds, which the kernels' tests hold. The tendon has what fascicles leave of a path: one ULP of
-/// a length of 0.9 L_ce0, 6e-8, is 9e-6 F0 of this muscle's tendon, whose stiffness is 152 F0/L_ce0;
-/// two lengths are rounded in `f32`, one in fixed point.
+/// Error bounds in `f32`, fixed point and `f64`, from the README's table of kernel errors. The
+/// tendon's length is path minus fascicle length: one ULP of a length of 0.9 L_ce0, 6e-8, is
+/// 9e-6 F0 in this muscle's tendon, whose stiffness is 152 F0/L_ce0. Two lengths are rounded in
+/// `f32`, one in fixed point.
 const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("F_se", [1.8e-5, 9e-6, 4e-14]),
     ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
@@ -16,7 +16,7 @@ const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
 ];
 
-/// A number that every arithmetic has.
+/// Rounds to a number that all arithmetics represent exactly.
 fn shared(value: f64) -> f64 {
     (value * 1_048_576.0).round() / 1_048_576.0
 }
@@ -69,20 +69,20 @@ fn worst<S: Scalar>() -> [f64; 6] {
         let f_pe2 = (c.strength * ((c.steepness * (l - c.onset_length)).exp() - 1.0)).min(0.0);
         see(2, curves.compression(number(l)), f_pe2);
         for (index, fiber) in MUSCLE.fibers.iter().enumerate() {
-            let (t, of_type) = (&fiber.fiber_type, curves.fiber(index).expect("a type"));
-            see(3, of_type.force_length(number(l)), papers_fl(t, l));
+            let (t, fiber_curves) = (&fiber.fiber_type, curves.fiber(index).expect("a type"));
+            see(3, fiber_curves.force_length(number(l)), papers_fl(t, l));
             for part in 0..=100 {
                 let v = shared(-8.0 + 0.16 * f64::from(part));
-                // Nearer to its pole, which the range ends at, FV magnifies the rounding of L.
+                // Near its pole at the end of the range FV magnifies the rounding of L.
                 if l > shortest + 0.05 {
-                    see(4, of_type.force_velocity(number(l), number(v)), papers_fv(t, l, v));
+                    see(4, fiber_curves.force_velocity(number(l), number(v)), papers_fv(t, l, v));
                 }
                 let f = shared(0.04 * f64::from(part));
-                see(5, of_type.activation_frequency(number(l), number(f)), papers_af(t, l, f));
+                see(5, fiber_curves.activation_frequency(number(l), number(f)), papers_af(t, l, f));
             }
         }
     }
-    // A slack tendon to one at F0, at any fascicle length.
+    // From a slack tendon to one at F0.
     let t = &e.tendon;
     for step in 0..=100 {
         let (l, stretch) = (shared(0.9), 0.9 + 0.15 * f64::from(step) / 100.0);
@@ -96,7 +96,7 @@ fn worst<S: Scalar>() -> [f64; 6] {
 }
 
 #[test]
-fn the_curves_of_a_muscle_are_the_papers() {
+fn curves_agree_with_the_papers_equations() {
     let worst = [worst::<f32>(), worst::<Fixed>(), worst::<f64>()];
     for (curve, (name, bounds)) in BOUNDS.into_iter().enumerate() {
         for (worst, bound) in worst.iter().zip(bounds) {
@@ -106,17 +106,20 @@ fn the_curves_of_a_muscle_are_the_papers() {
 }
 
 #[test]
-fn beyond_their_ranges_curves_are_clamped() {
+fn curves_are_clamped_beyond_their_ranges() {
     let muscle = ContinuousMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("valid");
-    let of_type = muscle.curves().fiber(1).expect("a type");
+    let fiber_curves = muscle.curves().fiber(1).expect("a type");
     let (shortest, longest) = MUSCLE.fascicle_domain();
     for (beyond, edge) in [(0.0, shortest as f32), (9.0, longest as f32)] {
-        assert_eq!(of_type.force_length(beyond), of_type.force_length(edge));
-        assert_eq!(of_type.force_velocity(beyond, -1.0), of_type.force_velocity(edge, -1.0));
-        let activation = |length| of_type.activation_frequency(length, 1.0);
+        assert_eq!(fiber_curves.force_length(beyond), fiber_curves.force_length(edge));
+        assert_eq!(
+            fiber_curves.force_velocity(beyond, -1.0),
+            fiber_curves.force_velocity(edge, -1.0)
+        );
+        let activation = |length| fiber_curves.activation_frequency(length, 1.0);
         assert_eq!(activation(beyond), activation(edge));
     }
-    assert_eq!(of_type.force_velocity(1.0, -1e9), 0.0);
-    assert_eq!(of_type.force_velocity(1.0, 1e9), of_type.force_velocity(1.0, 60.0));
-    assert_eq!(of_type.activation_frequency(1.0, -1.0), 0.0);
+    assert_eq!(fiber_curves.force_velocity(1.0, -1e9), 0.0);
+    assert_eq!(fiber_curves.force_velocity(1.0, 1e9), fiber_curves.force_velocity(1.0, 60.0));
+    assert_eq!(fiber_curves.activation_frequency(1.0, -1.0), 0.0);
 }

@@ -15,7 +15,7 @@ fn exact(p: &FatigueParams, time: f64, activation: f64, frequency: f64) -> f64 {
 
 /// The largest error of fitness over `ticks`.
 fn error<S: Scalar>(p: &FatigueParams, step: TimeStep, ticks: usize, a: f64, f: f64) -> f64 {
-    let fatigue = Fatigue::<S>::build(p, step).expect("a muscle that tires");
+    let fatigue = Fatigue::<S>::build(p, step).expect("valid fatigue parameters");
     let mut state = fatigue.rested();
     let mut largest = 0.0_f64;
     for tick in 1..=ticks {
@@ -27,7 +27,7 @@ fn error<S: Scalar>(p: &FatigueParams, step: TimeStep, ticks: usize, a: f64, f: 
 }
 
 #[test]
-fn fitness_is_that_of_the_equation_for_ten_minutes() {
+fn fitness_agrees_with_the_equation_for_ten_minutes() {
     let slowest = FatigueParams {
         fatigue_time: 1000.0,
         recovery_time: 1000.0,
@@ -39,10 +39,10 @@ fn fitness_is_that_of_the_equation_for_ten_minutes() {
         (FatigueParams::QUADRICEPS, 1.0, 20.0),
         (FatigueParams::QUADRICEPS, 0.37, 150.0),
         (slowest, 1.0, 30.0),
-        // So little in a tick that `f32` at 1 would not move at all.
+        // The change per tick is below half an ULP of `f32` at 1.
         (slowest, 0.004, 30.0),
         (fastest, 0.6, 50.0),
-        // So near to 1 in the end that the last steps are the smallest of all.
+        // The smallest changes per tick, close to the final value.
         (FatigueParams { least_fitness: 0.999, ..slowest }, 1.0, 30.0),
     ];
     for (p, activation, frequency) in cases {
@@ -52,7 +52,8 @@ fn fitness_is_that_of_the_equation_for_ten_minutes() {
             let single = error::<f32>(&p, step, ticks, activation, frequency);
             let fixed = error::<Fixed>(&p, step, ticks, activation, frequency);
             assert!(single < 1.1e-5, "{p:?} {seconds} s: {single:e}");
-            // A share of a tick, in Q0.32, tells 1e-4 s of 1,000 s to one in a thousand.
+            // The ratio of tick to time constant is in Q0.32: that of 1e-4 s to 1,000 s is rounded
+            // to about 0.1 %.
             assert!(fixed < 5e-4, "{p:?} {seconds} s: {fixed:e}");
         }
     }
@@ -61,9 +62,9 @@ fn fitness_is_that_of_the_equation_for_ten_minutes() {
 proptest! {
     #![proptest_config(config(300))]
 
-    /// Whatever a controller sends, not-a-number included.
+    /// For any input, including NaN.
     #[test]
-    fn fitness_stays_between_the_least_and_one(
+    fn fitness_stays_between_its_minimum_and_one(
         fatigue_time in 1.0..1000.0_f64,
         recovery_time in 1.0..1000.0_f64,
         least_fitness in 0.0..=1.0_f64,
@@ -90,14 +91,14 @@ proptest! {
 /// A restored state continues with the same bits; invalid states are refused.
 fn saved<S: Scalar>() {
     let fatigue = Fatigue::<S>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)
-        .expect("a muscle that tires");
+        .expect("valid fatigue parameters");
     let (mut state, f) = (fatigue.rested(), S::quantity(25.0));
     for _ in 0..5_000 {
         fatigue.advance(&mut state, S::ONE, f);
     }
     let words: Vec<S::Bits> = fatigue.save(&state).collect();
     assert_eq!(words.len(), FatigueState::<S>::SAVED_WORDS);
-    let mut restored = fatigue.restore(words.iter().copied()).expect("what a tick left behind");
+    let mut restored = fatigue.restore(words.iter().copied()).expect("a saved state");
     for _ in 0..1_000 {
         assert_eq!(
             fatigue.advance(&mut state, S::HALF, f),
@@ -110,25 +111,25 @@ fn saved<S: Scalar>() {
     beyond[1] = S::from_f64(1.5).to_bits();
     assert_eq!(fatigue.restore(beyond), Err(RestoreError::Value { word: 1 }));
 
-    // Nor is it another fatigue's, or for another time step.
+    // Other fatigue parameters or another time step refuse it.
     let other = FatigueParams { recovery_time: 31.0, ..FatigueParams::QUADRICEPS };
     let half = TimeStep::from_seconds(0.5e-3).expect("a step");
     for (params, step) in [(other, TimeStep::MILLISECOND), (FatigueParams::QUADRICEPS, half)] {
-        let fatigue = Fatigue::<S>::build(&params, step).expect("a muscle that tires");
+        let fatigue = Fatigue::<S>::build(&params, step).expect("valid fatigue parameters");
         let refused = fatigue.restore(words.iter().copied()).expect_err("another one's");
         assert!(matches!(refused, RestoreError::OtherMuscle { .. }), "{refused}");
     }
 }
 
 #[test]
-fn a_saved_state_goes_on_as_it_was() {
+fn a_restored_state_continues_with_the_same_bits() {
     saved::<f32>();
     saved::<Fixed>();
     saved::<f64>();
 }
 
 #[test]
-fn what_a_muscle_cannot_be_is_named() {
+fn invalid_parameters_are_named() {
     let refused = |p: FatigueParams| {
         Fatigue::<f32>::build(&p, TimeStep::MILLISECOND).expect_err("refused").to_string()
     };

@@ -1,6 +1,6 @@
-//! Fixed point: no drift, no wrap-around, and the same muscle as in `f32`.
+//! Fixed point: no drift, no wrap-around, and agreement with `f32`.
 //!
-//! CI runs these a second time in a profile that checks every addition for overflow.
+//! CI runs these tests again in a profile with overflow checks.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode as AnyMode, built, config, muscles, steps};
@@ -13,19 +13,19 @@ use vm_nostd::{
     paper_table_1,
 };
 
-/// Muscles that fixed point takes.
+/// Muscles that fixed point accepts.
 fn fixed_muscles() -> impl Strategy<Value = MuscleParams<2>> {
     muscles().prop_filter("a valid muscle", |params| {
         ContinuousMuscle::<Fixed, 2>::build(params, TimeStep::MILLISECOND).is_ok()
     })
 }
 
-/// A number from `least` to `most`, as likely small as large.
+/// A log-uniform number from `least` to `most`.
 fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> {
     (least.ln()..most.ln()).prop_map(f64::exp)
 }
 
-/// A fibre type with any coefficients that are documented to be allowed.
+/// A fibre type with any coefficients within the documented limits.
 fn any_type() -> impl Strategy<Value = FiberType> {
     let frequencies = (magnitude(0.5, 200.0), 0.0..5.0_f64, 0.0..5.0_f64);
     let length = (magnitude(0.1, 10.0), magnitude(0.1, 5.0), 1.0..10.0_f64);
@@ -70,7 +70,7 @@ fn any_type() -> impl Strategy<Value = FiberType> {
     )
 }
 
-/// A muscle with any parameters that are documented to be allowed, and that fixed point takes.
+/// A muscle with any parameters within the documented limits that fixed point accepts.
 fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
     let types = prop_oneof![
         (any_type(), any_type()).prop_map(|(a, b)| [a, b]),
@@ -122,7 +122,7 @@ fn any_muscle() -> impl Strategy<Value = MuscleParams<2>> {
         })
 }
 
-/// Any bits as inputs, biased towards the domain.
+/// Inputs of arbitrary bits, biased towards valid values.
 fn any_bits() -> impl Strategy<Value = (i32, i32, i32)> {
     let activation = prop_oneof![any::<i32>(), 0..=1_i32 << 24, Just(i32::MIN), Just(i32::MAX)];
     let path = prop_oneof![any::<i32>(), 0..300_000_000_i32, Just(i32::MIN), Just(i32::MAX)];
@@ -147,13 +147,13 @@ fn takes_any_bits<R: AnyMode<Fixed>>(
             assert!(output.force >= 0, "{output:?}");
             let saved: Vec<u32> = muscle.save(&state).collect();
             assert_eq!(saved.len(), State::<Fixed, R, 2>::SAVED_WORDS);
-            let restored = muscle.restore(saved).expect("a state that a tick left");
+            let restored = muscle.restore(saved).expect("a saved state");
             assert_eq!(restored, state);
         }
     }
 }
 
-/// Largest difference of the forces in `f32` and in fixed point, % of F0, on the same inputs.
+/// Largest difference of force between `f32` and fixed point on the same inputs, % of F0.
 fn difference<R: AnyMode<f32>, Q: AnyMode<Fixed>>(
     params: &MuscleParams<2>,
     segments: &[(u16, f64, u16)],
@@ -167,7 +167,7 @@ fn difference<R: AnyMode<f32>, Q: AnyMode<Fixed>>(
     let mut fixed_state = fixed.rest(Fixed::path_length(path)).expect("a path in range");
     let mut largest = 0.0_f64;
     for &(per_mille, goal, tenths) in segments {
-        // Towards a goal at which the tendon is taut, at up to 1 L_ce0/s and without a jerk.
+        // The path moves smoothly, at up to 1 L_ce0/s, to a goal at which the tendon is taut.
         let goal = shortest + (0.6 + 0.4 * goal) * (longest - shortest);
         let start = path;
         for tick in 0..300 {
@@ -192,7 +192,7 @@ proptest! {
     #![proptest_config(config(256))]
 
     #[test]
-    fn any_input_leaves_a_state_in_range_and_nothing_wraps_around(
+    fn any_input_keeps_the_state_in_range_without_wrap_around(
         params in fixed_muscles(),
         step in steps(),
         inputs in prop::collection::vec(any_bits(), 1..20),
@@ -204,12 +204,12 @@ proptest! {
     }
 
     #[test]
-    fn nothing_wraps_around_in_any_muscle_that_is_taken(
+    fn no_accepted_muscle_wraps_around(
         params in any_muscle(),
         step in steps(),
         inputs in prop::collection::vec(any_bits(), 1..20),
     ) {
-        // Fewer substeps at one step than at another: a muscle may be refused at this one.
+        // The number of substeps depends on the time step, so a muscle may be refused at this one.
         if ContinuousMuscle::<Fixed, 2>::build(&params, step).is_ok() {
             takes_any_bits::<NaturalContinuous>(&params, step, &inputs);
             takes_any_bits::<IntramuscularFes>(&params, step, &inputs);
@@ -219,9 +219,9 @@ proptest! {
     }
 
     #[test]
-    fn it_is_the_same_muscle_as_in_f32(
+    fn force_agrees_with_f32(
         params in fixed_muscles(),
-        // One thousandth is the threshold of the first type: on it, rounding decides.
+        // 0.001 is the threshold of the first type, where rounding decides on recruitment.
         segments in prop::collection::vec((2..=1000_u16, 0.0..=1.0_f64, 0..800_u16), 2..6),
     ) {
         let natural = difference::<NaturalContinuous, NaturalContinuous>(&params, &segments);
@@ -230,7 +230,7 @@ proptest! {
     }
 }
 
-/// A muscle at rest on a path in metres, against the path in the arithmetic's own type.
+/// Compares resting on a path in metres with resting on a path in the arithmetic's own type.
 fn rests_on_metres<S: Scalar>() {
     let muscle = FesMuscle::<S, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
     assert_eq!(muscle.rest_at_metres(0.16), muscle.rest(S::path_length(0.16)));
@@ -241,21 +241,21 @@ fn rests_on_metres<S: Scalar>() {
 }
 
 #[test]
-fn a_muscle_of_any_arithmetic_is_put_at_rest_on_metres() {
+fn rest_at_metres_agrees_with_rest_in_every_arithmetic() {
     rests_on_metres::<f32>();
     rests_on_metres::<Fixed>();
     rests_on_metres::<f64>();
 }
 
 #[test]
-fn states_that_no_tick_leaves_are_refused() {
+fn states_out_of_range_are_refused() {
     let muscle = FesMuscle::<Fixed, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
     let state = muscle.rest_at_metres(0.16).expect("a path in range");
     let saved: Vec<u32> = muscle.save(&state).collect();
     let whole = |value: u32| value << 24;
-    // Word 0 is the fingerprint. Word 4 multiplied F_pe2, 5 and 6 are the speed, 7 and 8 the gains,
-    // 9 and 10 Y of the slow type, which yields and does not sag, 13 and 14 f_env of the first
-    // type, and 15 to 22 the rest of that type; lags have two, the higher one second.
+    // Word 0 is the fingerprint, 4 the weight of F_pe2, 5 and 6 the speed, 7 and 8 the gains, 9 and
+    // 10 Y of the slow type, which yields and does not sag, 13 and 14 f_env of the first type, 15
+    // to 22 the rest of that type. Lags have two words, the higher one second.
     for (word, value) in [
         (1, 0x8000_0000), // extension -128
         (1, whole(129)),  // extension -127
@@ -275,14 +275,14 @@ fn states_that_no_tick_leaves_are_refused() {
     ] {
         let mut words = saved.clone();
         words[word] = value;
-        let refused = muscle.restore(words).expect_err("no tick leaves this");
+        let refused = muscle.restore(words).expect_err("out of range");
         assert!(matches!(refused, RestoreError::Value { word: w } if w <= word), "word {word}");
     }
     assert_eq!(muscle.restore(saved), Ok(state));
 }
 
 #[test]
-fn muscles_that_fixed_point_cannot_hold_are_refused_by_name() {
+fn muscles_that_fixed_point_cannot_represent_are_refused_by_name() {
     let refused = |change: fn(&mut MuscleParams<2>)| {
         let mut params = MUSCLE;
         change(&mut params);

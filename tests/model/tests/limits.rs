@@ -1,4 +1,4 @@
-//! Every limit refuses values beyond it by name, and every flag is raised by its cause.
+//! Every value beyond its limit is refused by name, and every flag is raised by its cause.
 
 use firmware::MUSCLE;
 use vm_nostd::{
@@ -8,8 +8,8 @@ use vm_nostd::{
 
 type Params = MuscleParams<2>;
 
-/// A field, its limits as documented, and how to set it. The limits are written out here: a
-/// limit that moves has to be moved twice.
+/// A field, its documented limits, and a setter. The limits are duplicated here on purpose, so that
+/// no limit changes unnoticed.
 type Row = (&'static str, f64, f64, fn(&mut Params, f64));
 
 const OF_MUSCLE: &[Row] = &[
@@ -31,7 +31,7 @@ const OF_MUSCLE: &[Row] = &[
     ("density", 500.0, 2000.0, |p, x| p.elements.density = x),
 ];
 
-/// Of the second, fast type.
+/// Fields of the second, fast type.
 const OF_FIBER: &[Row] = &[
     ("fraction", 1e-3, 1.0, |p, x| p.fibers[1].fraction = x),
     ("half_force_frequency", 0.5, 200.0, |p, x| {
@@ -83,7 +83,7 @@ const OF_FIBER: &[Row] = &[
     }),
 ];
 
-/// Of the first, slow type.
+/// Fields of the first, slow type.
 const OF_SLOW: &[Row] = &[
     ("yielding.depth", 0.0, 0.95, |p, x| {
         p.fibers[0].fiber_type.yielding.as_mut().expect("a type that yields").depth = x;
@@ -116,7 +116,7 @@ fn every_parameter_is_refused_just_beyond_its_limits() {
 }
 
 #[test]
-fn what_does_not_fit_together_is_refused() {
+fn inconsistent_parameters_are_refused() {
     let refused = |change: fn(&mut Params)| {
         let mut params = MUSCLE;
         change(&mut params);
@@ -146,7 +146,7 @@ fn what_does_not_fit_together_is_refused() {
 }
 
 #[test]
-fn a_threshold_at_full_activation_leaves_the_state_finite() {
+fn a_threshold_at_full_activation_keeps_the_state_finite() {
     let mut params = MUSCLE;
     params.recruitment_saturation = 1.0;
     params.fibers[0].fraction = 0.999;
@@ -162,7 +162,7 @@ fn a_threshold_at_full_activation_leaves_the_state_finite() {
 
 #[test]
 fn the_steepest_activation_does_not_overflow() {
-    // Af is a step in frequency here: its power overflows f32 unless it is held.
+    // Af is nearly a step in frequency here: its power overflows f32 unless limited.
     let mut params = MUSCLE;
     for fiber in &mut params.fibers {
         fiber.fiber_type.half_force_frequency = 0.5;
@@ -192,14 +192,14 @@ fn muscle() -> ContinuousMuscle<f32, 2> {
 }
 
 #[test]
-fn a_state_that_no_tick_leaves_is_not_restored() {
+fn a_state_out_of_range_is_not_restored() {
     let muscle = muscle();
     let words: Vec<u32> = muscle.save(&muscle.rest(0.16).expect("in range")).collect();
     let expected = words.len();
     let refused = |words: Vec<u32>| muscle.restore(words).expect_err("a state to refuse");
     assert_eq!(refused(words[..expected - 1].to_vec()), RestoreError::Length { expected });
     assert_eq!(refused([words.as_slice(), &[0]].concat()), RestoreError::Length { expected });
-    // The first word says whose they are.
+    // The first word is the fingerprint.
     for word in 1..expected {
         for value in [f32::NAN, f32::INFINITY, -2000.0, 2000.0] {
             let mut wrong = words.clone();
@@ -211,7 +211,7 @@ fn a_state_that_no_tick_leaves_is_not_restored() {
 }
 
 #[test]
-fn a_missing_sensor_counts_as_no_activation_and_no_motion() {
+fn nan_inputs_count_as_no_activation_and_no_motion() {
     let muscle = muscle();
     let mut state = muscle.rest(0.16).expect("in range");
     let before = muscle.observe(&state).force;
@@ -230,21 +230,21 @@ fn a_missing_sensor_counts_as_no_activation_and_no_motion() {
 }
 
 #[test]
-fn flags_of_the_state_are_raised_by_what_they_name() {
+fn flags_of_the_state_are_raised_by_their_causes() {
     let muscle = muscle();
     let (shortest, longest) = muscle.path_length_range();
     let step = |state: &mut _, activation: f32, path_length: f32| {
         muscle.step(state, Input { activation, path_length, stimulation_frequency: 0.0 })
     };
 
-    // A path that jumps by its whole range pulls the fascicles along at full speed.
+    // A path that jumps by its whole range stretches the fascicles at the velocity limit.
     let mut state = muscle.rest(shortest).expect("in range");
     let jumped = step(&mut state, 0.0, longest);
     assert!(jumped.status.contains(Status::FASCICLE_VELOCITY_LIMITED), "{jumped:?}");
     assert!(jumped.status.contains(Status::MECHANICS_UNSETTLED), "{jumped:?}");
 
-    // Fully active, and the path gone at once: with no tendon to hold them the fascicles shorten
-    // as fast as they can, and nothing stops them but the end of their domain.
+    // A fully active muscle whose path jumps to its shortest: the tendon is slack, and the
+    // fascicles shorten at full speed to the end of the state range.
     let mut state = muscle.rest(0.17).expect("in range");
     for _ in 0..300 {
         assert_eq!(step(&mut state, 1.0, 0.17).status, Status::empty());
@@ -266,7 +266,7 @@ fn flags_of_the_state_are_raised_by_what_they_name() {
 }
 
 #[test]
-fn fascicles_are_no_faster_than_the_state_can_hold_whatever_their_filaments_could() {
+fn fascicle_velocity_is_limited_to_the_state_range() {
     let mut params = MUSCLE;
     for fiber in &mut params.fibers {
         fiber.fiber_type.force_velocity.maximum_velocity = -100.0;
@@ -277,7 +277,7 @@ fn fascicles_are_no_faster_than_the_state_can_hold_whatever_their_filaments_coul
     let (shortest, longest) = muscle.path_length_range();
     let mut held = 0;
     for stretched in 0..60 {
-        // Fully active, and the path, stretched for some ticks, gone at once.
+        // Fully active; the path jumps to its longest for some ticks, then to its shortest.
         let mut state = muscle.rest(0.17).expect("in range");
         for tick in 0..400 {
             let end = 300 + stretched;
@@ -300,8 +300,8 @@ fn fascicles_are_no_faster_than_the_state_can_hold_whatever_their_filaments_coul
 }
 
 #[test]
-fn fascicles_beyond_the_domain_are_flagged_and_their_passive_force_still_holds() {
-    // Long enough on its longest path for n_f of the slow type to fall below 0.2.
+fn fascicles_beyond_the_validity_range_are_flagged_and_passive_force_is_valid() {
+    // The longest path stretches the fascicles until n_f of the slow type is below 0.2.
     let params = Params { max_path_length: 0.218, ..MUSCLE };
     let muscle =
         ContinuousMuscle::<f32, 2>::build(&params, TimeStep::MILLISECOND).expect("a valid muscle");
@@ -318,7 +318,7 @@ fn fascicles_beyond_the_domain_are_flagged_and_their_passive_force_still_holds()
 }
 
 #[test]
-fn motor_units_that_cannot_be_are_refused_by_field_value_and_limit() {
+fn invalid_motor_units_are_refused_with_field_value_and_limit() {
     let refused = |sizes| MotorUnits::<8>::new(&MUSCLE, sizes).expect_err("units to refuse");
     let three = UnitSizes::Default(3);
     for (sizes, field, fiber, value) in [
@@ -342,7 +342,7 @@ fn motor_units_that_cannot_be_are_refused_by_field_value_and_limit() {
     let units = units.expect("five units");
     assert_eq!(units.count(), 5);
 
-    // Units of one muscle are not another's.
+    // Units of another muscle are refused.
     let mut other = MUSCLE;
     (other.fibers[0].fraction, other.fibers[1].fraction) = (0.5, 0.5);
     let built =
@@ -356,8 +356,8 @@ const SMALLEST: &str = "units: share of the smallest in its type";
 const SHARE: &str = "units: the fraction of the type they were made for";
 
 #[test]
-fn rules_of_sizes_recruit_as_the_same_sizes_listed() {
-    // Thresholds are where a unit's frequency sets in; equal forces say that they are equal.
+fn rules_for_unit_sizes_equal_the_listed_sizes() {
+    // Equal forces imply equal thresholds and shares.
     let steady = |sizes| {
         let units = MotorUnits::<6>::new(&MUSCLE, [sizes; 2]).expect("valid units");
         let muscle =
@@ -374,14 +374,14 @@ fn rules_of_sizes_recruit_as_the_same_sizes_listed() {
     let geometric = steady(UnitSizes::Geometric(3, 0.5));
     assert!(close(geometric, steady(UnitSizes::Listed(&[4.0, 6.0, 9.0]))));
     assert!(!close(geometric, steady(UnitSizes::Equal(3))));
-    // By default a slow type, of rank 2, has 3 : 4 : 5 and a fast one, of rank 3, 4 : 5 : 6.
+    // Default sizes: 3 : 4 : 5 for a slow type (rank 2), 4 : 5 : 6 for a fast one (rank 3).
     let listed = [UnitSizes::Listed(&[3.0, 4.0, 5.0]), UnitSizes::Listed(&[4.0, 5.0, 6.0])];
     let by_default = MotorUnits::<6>::new(&MUSCLE, [UnitSizes::Default(3); 2]).expect("valid");
     assert_eq!(by_default, MotorUnits::new(&MUSCLE, listed).expect("valid"));
 }
 
 #[test]
-fn all_units_fire_as_fast_as_they_can_at_full_activation_wherever_rounding_puts_thresholds() {
+fn all_units_fire_at_fmax_at_full_activation_despite_rounded_thresholds() {
     const UNITS: usize = 32;
     fn force<S: Scalar>(params: &Params, counts: [usize; 2]) -> f64 {
         let sizes = counts.map(UnitSizes::Default);
@@ -400,7 +400,7 @@ fn all_units_fire_as_fast_as_they_can_at_full_activation_wherever_rounding_puts_
     params.recruitment_saturation = 1.0;
     for (slow, fast) in [(0.6, 0.4), (0.5, 0.5), (0.3, 0.7), (0.6, 0.399_999_5)] {
         (params.fibers[0].fraction, params.fibers[1].fraction) = (slow, fast);
-        // Of all units, whatever their number and sizes, the force is nearly the same.
+        // With all units recruited the force hardly depends on their number and sizes.
         let one = force::<f64>(&params, [1, 1]);
         for counts in [[7, 1], [1, 14], [3, 3], [11, 7], [16, 16]] {
             let found = [

@@ -10,12 +10,12 @@ use vm_nostd::{
     Status, SteadyFes, TimeStep, UnitSizes, feline_vm4, human_vm4, paper_table_1,
 };
 
-/// Types of each muscle; one alone is given three times.
+/// Fibre types of each muscle; a single type is repeated.
 const TYPES: usize = 3;
 type Params = MuscleParams<TYPES>;
 type Discrete = NaturalDiscrete<FascicleLength, 6>;
 
-/// The sets, with the types that a muscle has in order of rank: each alone, and mixed.
+/// The published sets with fibre types in order of rank, each type alone and mixed.
 fn sets() -> Vec<(ElementParams, [FiberType; TYPES])> {
     let (human, feline, paper) =
         (human_vm4::ELEMENTS, feline_vm4::ELEMENTS, paper_table_1::ELEMENTS);
@@ -35,8 +35,8 @@ fn sets() -> Vec<(ElementParams, [FiberType; TYPES])> {
     sets
 }
 
-/// The muscle of a set, of fascicles (m), a tendon in fascicle lengths, F0 (N), two fractions, U_r,
-/// and L_max.
+/// A muscle from a set, fascicle length (m), tendon length (fascicle lengths), F0 (N), two
+/// fractions, U_r and L_max.
 fn muscle(
     (elements, types): (ElementParams, [FiberType; TYPES]),
     (fascicle_length, ratio, newtons): (f64, f64, f64),
@@ -65,7 +65,7 @@ fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> {
     (least.ln()..=most.ln()).prop_map(move |x| x.exp().clamp(least, most))
 }
 
-/// Any muscle of the domain, its corners as often as its inside.
+/// Any muscle of this domain; its corners as often as its interior.
 fn published() -> impl Strategy<Value = Params> {
     let set = prop::sample::select(sets());
     let fascicle = prop_oneof![2 => magnitude(0.015, 0.5), 1 => Just(0.015), 1 => Just(0.5)];
@@ -93,13 +93,13 @@ impl<S: Scalar> Mode<S> for Discrete {
     }
 }
 
-/// A mild second: activation and path swing slowly, with the tendon taut. Forces in F0, and all
-/// flags.
+/// Forces (F0) and flags of a second in which activation and path change slowly and the tendon is
+/// taut.
 fn mild<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> (Vec<f64>, Status) {
     let muscle = Muscle::<S, R, TYPES>::build_with_units(params, &R::units(params), step)
         .unwrap_or_else(|error| panic!("{error}: {params:?}"));
     let tendon = params.elements.tendon.slack_length + 0.02;
-    // The same inputs for all: exact in `Fixed`, nearly exact in `f32`.
+    // The same inputs for all arithmetics: exact in `Fixed`, nearly exact in `f32`.
     let path = |fascicle: f64| {
         let metres = tendon * params.tendon_length + fascicle * params.fascicle_length;
         S::path_length((metres * 1e6).round() * 1e-6)
@@ -130,7 +130,7 @@ fn worst(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Error that fixed point may add to that of `f32`, F0: a tenth of the promise.
+/// Error that fixed point may add to that of `f32`, F0: a tenth of the promised limit.
 const ADDED: f64 = 1e-4;
 
 fn as_accurate_as_f32<R: Mode<f64> + Mode<f32> + Mode<Fixed>>(
@@ -149,7 +149,7 @@ proptest! {
     #![proptest_config(config(192))]
 
     #[test]
-    fn fixed_point_takes_every_published_muscle_and_is_as_accurate_as_f32(params in published(), tick in prop::sample::select(vec![1e-3, 0.5e-3, 2e-3])) {
+    fn fixed_point_accepts_published_muscles_with_the_accuracy_of_f32(params in published(), tick in prop::sample::select(vec![1e-3, 0.5e-3, 2e-3])) {
         let step = TimeStep::from_seconds(tick).expect("a step");
         let found = [
             as_accurate_as_f32::<NaturalContinuous>(&params, step),
@@ -162,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn no_bits_of_inputs_leave_a_state_that_cannot_be(
+    fn any_input_bits_keep_the_state_valid(
         params in published(),
         tick in prop::sample::select(vec![1e-4, 1e-3, 2e-3]),
         inputs in prop::collection::vec(bits(), 1..12),
@@ -174,7 +174,7 @@ proptest! {
     }
 }
 
-/// Anything that the bits of an input can be, and often a path of a muscle.
+/// Arbitrary bits of inputs, with valid paths in a large share.
 fn bits() -> impl Strategy<Value = (i32, i32, i32)> {
     let activation = prop_oneof![any::<i32>(), 0..=1_i32 << 24];
     let path = prop_oneof![any::<i32>(), 0..300_000_000_i32, Just(i32::MIN), Just(i32::MAX)];
@@ -202,24 +202,24 @@ fn takes_any_bits<R: Mode<Fixed>>(params: &Params, step: TimeStep, inputs: &[(i3
 }
 
 /// A muscle of 1 N: 1 mN would be a thousandth of F0.
-fn of_one_newton() -> Params {
+fn one_newton_muscle() -> Params {
     let sets = sets();
     muscle(sets[0], (0.03, 1.0, 1.0), (0.3, 0.5, 0.8, 1.4))
 }
 
 #[test]
-fn forces_of_a_muscle_of_one_newton_are_told_to_a_ten_thousandth_of_it() {
-    let params = of_one_newton();
+fn forces_of_a_one_newton_muscle_are_resolved_to_1e_4_of_f0() {
+    let params = one_newton_muscle();
     let step = TimeStep::MILLISECOND;
     let (exact, _) = mild::<f64, NaturalContinuous>(&params, step);
     let (fixed, _) = mild::<Fixed, NaturalContinuous>(&params, step);
     assert!(worst(&fixed, &exact) < 1e-4, "{}", worst(&fixed, &exact));
-    // A slow force changes by less per tick, and not in steps of 1 mN.
+    // A slowly rising force changes by less per tick, not in steps of 1 mN.
     let mut changes: Vec<f64> = fixed.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     changes.retain(|change| *change > 0.0);
     assert!(changes.len() > fixed.len() / 2, "{} of {}", changes.len(), fixed.len());
     assert!(changes.iter().copied().fold(1.0, f64::min) < 1e-6);
-    // The inverse is as fine.
+    // The inverse model has the same resolution.
     let steady = SteadyFes::<Fixed, TYPES>::build(&params).expect("a muscle");
     let path = Fixed::path_length(params.fascicle_length + params.tendon_length);
     for share in 1..200 {

@@ -9,11 +9,11 @@ use vm_nostd::{
 
 type Params = MuscleParams<TYPES>;
 
-/// The force (F0) with which a slack tendon snaps taut between a path that lengthens at 5 L_ce0/s
-/// and fascicles that shorten as fast as they can: that speed times √(stiffness × mass).
+/// Peak force (F0) when a slack tendon snaps taut: the relative velocity of a path that lengthens
+/// at 5 L_ce0/s and fascicles that shorten at V_max, times √(stiffness × mass).
 ///
-/// Where a very long muscle has a very short tendon this alone can exceed 3 F0, in the reference
-/// as in the model; such muscles are left out where force is held against that bound.
+/// For a very long muscle with a very short tendon this can exceed 3 F0, in the reference as well;
+/// such muscles are excluded from the check of that bound.
 fn snap(params: &Params) -> f64 {
     let fastest = params
         .fibers
@@ -26,8 +26,8 @@ fn snap(params: &Params) -> f64 {
     (5.0 + fastest) * (stiffness * mass).sqrt()
 }
 
-/// What is held for a while: activation, where the path is going (as a share of its range) and
-/// how fast (as a share of the fastest allowed), stimulation frequency.
+/// A segment of constant inputs: activation, goal of the path (share of its range), its speed
+/// (share of the limit), stimulation frequency.
 type Segment = (f32, f32, f32, f32);
 
 fn segments() -> impl Strategy<Value = Vec<Segment>> {
@@ -53,13 +53,13 @@ fn all_finite<R: Mode<f32>>(output: &Output<f32>, state: &State<f32, R, TYPES>) 
         && state.words().all(|word| f32::from_bits(word).is_finite())
 }
 
-/// The path range in the muscle's own numbers, where every path is taken as it is.
+/// The range in which paths are not clipped, in the muscle's arithmetic.
 fn path_range(params: &Params) -> (f32, f32) {
     let (shortest, longest) = params.path_domain();
     (shortest as f32, longest as f32)
 }
 
-/// Steps through segments; the path moves slower than 5 L_ce0/s and stays in range.
+/// Steps through segments; the path is slower than 5 L_ce0/s and stays in range.
 fn drive<R: Mode<f32>>(
     muscle: &Muscle<f32, R, TYPES>,
     params: &Params,
@@ -70,7 +70,7 @@ fn drive<R: Mode<f32>>(
     let (shortest, longest) = path_range(params);
     let mut path = shortest + 0.6 * (longest - shortest);
     let mut state = muscle.rest(path).expect("a path in range");
-    // A little slower than the limit, for the rounding of the path itself.
+    // Slightly below the limit because the path is rounded.
     let stride = (4.99 * params.fascicle_length * step.seconds()) as f32;
     let ticks = (0.1 / step.seconds()) as usize;
     for &(activation, goal, speed, stimulation_frequency) in segments {
@@ -90,7 +90,7 @@ fn stays_in_range<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Seg
     // Plus the passive force on the longest path.
     let at_rest = muscle.rest(path_range(params).1).expect("a path in range");
     let most = 3.0 * params.max_isometric_force() as f32 + muscle.observe(&at_rest).force;
-    let of_state = Status::FASCICLE_OUTSIDE_DOMAIN
+    let state_flags = Status::FASCICLE_OUTSIDE_DOMAIN
         | Status::FASCICLE_LENGTH_LIMITED
         | Status::FASCICLE_VELOCITY_LIMITED
         | Status::MECHANICS_UNSETTLED;
@@ -99,8 +99,8 @@ fn stays_in_range<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Seg
     drive(&muscle, params, step, segments, |state, input, output| {
         assert!(all_finite(&output, state), "{output:?} {state:?}");
         assert!((0.0..=most).contains(&output.force), "{} N of {most} at {input:?}", output.force);
-        assert!(of_state.contains(output.status), "{:?} for {input:?}", output.status);
-        // Within the rounding of f32, a state outside the domain says so.
+        assert!(state_flags.contains(output.status), "{:?} for {input:?}", output.status);
+        // A state outside the validity range is flagged, within the rounding tolerance of f32.
         let (length, velocity) =
             (f64::from(output.fascicle_length), f64::from(output.fascicle_velocity));
         let inside = (shortest - 1e-6..=longest + 1e-6).contains(&length);
@@ -110,7 +110,7 @@ fn stays_in_range<R: Mode<f32>>(params: &Params, step: TimeStep, segments: &[Seg
     });
 }
 
-fn takes_anything<R: Mode<f32>>(params: &Params, step: TimeStep, inputs: &[(f32, f32, f32)]) {
+fn any_input_is_handled<R: Mode<f32>>(params: &Params, step: TimeStep, inputs: &[(f32, f32, f32)]) {
     let muscle = built::<f32, R>(params, step);
     let (shortest, longest) = path_range(params);
     let mut state = muscle.rest(0.5 * (shortest + longest)).expect("a path in range");
@@ -170,7 +170,7 @@ fn continues_identically<R: Mode<f32>>(params: &Params, step: TimeStep, segments
         }
         let saved: Vec<u32> = muscle.save(state).collect();
         assert_eq!(saved.len(), State::<f32, R, TYPES>::SAVED_WORDS);
-        restored = Some(muscle.restore(saved).expect("a state that a tick left"));
+        restored = Some(muscle.restore(saved).expect("a saved state"));
     });
 }
 
@@ -190,15 +190,15 @@ proptest! {
     }
 
     #[test]
-    fn any_input_leaves_a_finite_state_and_the_right_flags(
+    fn any_input_keeps_the_state_finite_and_raises_the_right_flags(
         params in muscles(),
         step in steps(),
         inputs in prop::collection::vec((any_number(), any_number(), any_number()), 1..20),
     ) {
-        takes_anything::<NaturalContinuous>(&params, step, &inputs);
-        takes_anything::<IntramuscularFes>(&params, step, &inputs);
-        takes_anything::<Discrete<FascicleLength>>(&params, step, &inputs);
-        takes_anything::<Discrete<EffectiveLength>>(&params, step, &inputs);
+        any_input_is_handled::<NaturalContinuous>(&params, step, &inputs);
+        any_input_is_handled::<IntramuscularFes>(&params, step, &inputs);
+        any_input_is_handled::<Discrete<FascicleLength>>(&params, step, &inputs);
+        any_input_is_handled::<Discrete<EffectiveLength>>(&params, step, &inputs);
     }
 
     #[test]
@@ -220,8 +220,8 @@ proptest! {
         let muscle = ContinuousMuscle::<f32, TYPES>::build(&params, step).expect("a valid muscle");
         let mut state = muscle.rest(path_length).expect("a path in range");
         let at_rest = muscle.observe(&state);
-        // On a long path its fascicles may be where only activation keeps them from; passive forces
-        // hold there.
+        // On a long path passive fascicles may be outside the validity range; passive forces are
+        // valid there.
         let beyond = f64::from(at_rest.fascicle_length) > params.fascicle_domain().1;
         let expected = if beyond { Status::FASCICLE_OUTSIDE_DOMAIN } else { Status::empty() };
         let input = Input { activation: 0.0, path_length, stimulation_frequency: 0.0 };
@@ -241,7 +241,7 @@ proptest! {
         amplitude in 0.05..0.5_f64,
         period in 0.2..1.0_f64,
     ) {
-        // The work done by the tendon force on the path, from rest to rest.
+        // Work of the tendon force along the path, from rest to rest.
         let step = TimeStep::MILLISECOND;
         let muscle = ContinuousMuscle::<f64, TYPES>::build(&params, step).expect("a valid muscle");
         let (shortest, longest) = params.path_domain();
@@ -274,7 +274,7 @@ fn steady_force<R: Mode<f32>>(
     stimulation_frequency: f32,
 ) -> f32 {
     let slack = params.elements.tendon.slack_length * params.tendon_length;
-    // A short muscle on a long tendon may end before that.
+    // The path range of a short muscle with a long tendon may end before that.
     let path_length = ((params.fascicle_length + 1.02 * slack) as f32).min(path_range(params).1);
     let mut state = muscle.rest(path_length).expect("a path in range");
     let input = Input { activation, path_length, stimulation_frequency };

@@ -16,7 +16,7 @@ fn pulse<S: Scalar>(amplitude: f64, width: f64) -> Pulse<S> {
     Pulse { amplitude: S::quantity(amplitude), width: S::quantity(width) }
 }
 
-/// Curves from that of a nerve cuff to that of a surface electrode.
+/// Curves from nerve cuffs to surface electrodes.
 fn curves() -> impl Strategy<Value = RecruitmentCurveParams> {
     (-5.0..-1.3_f64, 0.1..3.0_f64, 5e-5..1e-3, 1.0..10.0).prop_map(
         |(threshold, above, chronaxie, slope)| {
@@ -48,7 +48,7 @@ fn check<S: Scalar>(
     let error = (found.to_f64() - exact(p, amplitude, width)).abs();
     prop_assert!(error <= most, "{p:?} {amplitude} mA {width} us: {error:e} > {most:e}");
 
-    // There and back.
+    // The inverse returns the input.
     for activation in [0.0, 0.1, 0.5, 0.93, 1.0] {
         let wanted = S::from_f64(activation);
         let (back, status) = curve.amplitude_for(wanted, S::quantity(width));
@@ -59,7 +59,7 @@ fn check<S: Scalar>(
             prop_assert!(error <= most, "{p:?} U {activation}, {back} mA: {error:e} > {most:e}");
         } else {
             prop_assert_eq!(status, PulseStatus::UNREACHABLE);
-            prop_assert!(activation > 0.0, "nothing can always be recruited");
+            prop_assert!(activation > 0.0, "zero activation is always reachable");
             let greatest = 500.0_f64.min(p.saturation * 1e5);
             prop_assert!((back - greatest).abs() <= 1e-4 + 1e-6 * greatest, "{back} mA");
             prop_assert!(exact(p, greatest, width) <= activation + most);
@@ -67,7 +67,7 @@ fn check<S: Scalar>(
         let (back, status) = curve.width_for(wanted, S::quantity(amplitude));
         let back = S::quantity_value(back);
         if status.is_empty() {
-            // Towards the longest pulses, width does ever less and is told ever less well.
+            // Near the longest pulses the curve flattens, and width is poorly determined.
             let error = (exact(p, amplitude, back) - activation).abs();
             let most = 2.0 * bound(p, amplitude, unit, amplitude_unit)
                 + p.slope * amplitude_unit / (p.chronaxie * 1e6) * amplitude
@@ -75,7 +75,7 @@ fn check<S: Scalar>(
             prop_assert!(error <= most, "{p:?} U {activation}, {back} us: {error:e} > {most:e}");
         } else {
             prop_assert_eq!(status, PulseStatus::UNREACHABLE);
-            prop_assert!(activation > 0.0, "nothing can always be recruited");
+            prop_assert!(activation > 0.0, "zero activation is always reachable");
             prop_assert!(exact(p, amplitude, 5000.0) <= activation + most);
         }
     }
@@ -86,12 +86,12 @@ proptest! {
     #![proptest_config(config(4000))]
 
     #[test]
-    fn curves_and_inverses_are_those_of_the_equations(
+    fn curves_and_inverses_agree_with_the_equations(
         p in curves(),
         share in 0.0..2.0_f64,
         width in 5.0..5000.0_f64,
     ) {
-        // Around the rise of the curve, within the limits of a pulse.
+        // Around the rise of the curve, within the limits of pulses.
         let amplitude = share * p.saturation * 1e3 * (1.0 + p.chronaxie * 1e6 / width);
         let amplitude = amplitude.min(500.0).min(p.saturation * 99e3);
         check::<f32>(&p, (amplitude, width), 2_f64.powi(-24), amplitude * 2_f64.powi(-23))?;
@@ -99,7 +99,7 @@ proptest! {
     }
 }
 
-/// The middle of the range of each parameter, and its edges.
+/// Combinations of typical and extreme values of each parameter.
 fn corners() -> Vec<RecruitmentCurveParams> {
     let mut all = Vec::new();
     for (threshold, saturation) in [(4e-3, 12e-3), (1e-5, 2e-5), (0.19, 0.2), (1e-3, 0.1)] {
@@ -112,9 +112,9 @@ fn corners() -> Vec<RecruitmentCurveParams> {
     all
 }
 
-/// Neighbouring amplitudes, and neighbouring widths, all the way from nothing to saturation.
+/// Monotonic in amplitude and in width, from zero to saturation.
 #[test]
-fn activation_never_falls_where_a_pulse_grows() {
+fn activation_is_monotonic_in_amplitude_and_width() {
     for p in corners() {
         let fixed = RecruitmentCurve::<Fixed>::build(&p).expect("a curve");
         let single = RecruitmentCurve::<f32>::build(&p).expect("a curve");
@@ -147,7 +147,7 @@ fn activation_never_falls_where_a_pulse_grows() {
 }
 
 #[test]
-fn nothing_below_threshold_and_all_from_saturation_on() {
+fn activation_is_zero_below_threshold_and_one_above_saturation() {
     for p in corners() {
         let curve = RecruitmentCurve::<f32>::build(&p).expect("a curve");
         let at = |share: f64| {
@@ -163,7 +163,7 @@ fn nothing_below_threshold_and_all_from_saturation_on() {
 }
 
 #[test]
-fn what_a_pulse_cannot_be_is_clipped_and_flagged() {
+fn invalid_pulses_are_clipped_and_flagged() {
     let p =
         RecruitmentCurveParams { threshold: 4e-3, saturation: 12e-3, chronaxie: 2e-4, slope: 2.0 };
     let curve = RecruitmentCurve::<f32>::build(&p).expect("a curve");
@@ -186,7 +186,7 @@ fn what_a_pulse_cannot_be_is_clipped_and_flagged() {
     assert_eq!(status, both);
     assert_eq!(curve.amplitude_for(f32::NAN, 200.0).1, PulseStatus::ACTIVATION_NOT_FINITE);
     assert_eq!(curve.width_for(0.5, 7.0), (5000.0, PulseStatus::UNREACHABLE));
-    // Nothing is recruited by any of these, and needs no flag.
+    // None of these recruits anything, and none is flagged.
     assert_eq!(curve.width_for(0.0, 2.0), (5000.0, PulseStatus::empty()));
     assert_eq!(curve.amplitude_for(0.0, 1.0), (500.0, PulseStatus::empty()));
     assert_eq!(curve.amplitude_for(0.0, 0.0), (500.0, PulseStatus::empty()));

@@ -1,4 +1,4 @@
-//! Limits and thresholds at their edges: just inside is accepted, just outside is refused.
+//! Limits and thresholds: values just inside are accepted, values just outside are refused.
 
 use firmware::MUSCLE;
 use vm_nostd::{
@@ -14,7 +14,7 @@ fn changed(change: impl FnOnce(&mut Params)) -> Params {
 }
 
 #[test]
-fn fractions_add_to_one_within_a_millionth() {
+fn fractions_must_add_to_one_within_1e_6() {
     for off in [-0.9e-6, 0.9e-6] {
         assert_eq!(changed(|p| p.fibers[0].fraction += off).validate(), Ok(()), "{off}");
     }
@@ -26,10 +26,10 @@ fn fractions_add_to_one_within_a_millionth() {
     }
 }
 
-/// Force rises with velocity at every length that fascicles may have: at its shortest, its longest,
-/// and where the coefficients turn back between the two.
+/// FV must rise with velocity at every fascicle length: at the shortest, at the longest, and at an
+/// extremum of its coefficients in between.
 #[test]
-fn types_whose_force_falls_with_velocity_somewhere_are_refused() {
+fn types_with_a_falling_force_velocity_curve_are_refused() {
     let refused = |shortening: Option<[f64; 2]>, lengthening: Option<[f64; 3]>| {
         let params = changed(|p| {
             let curve = &mut p.fibers[1].fiber_type.force_velocity;
@@ -44,11 +44,11 @@ fn types_whose_force_falls_with_velocity_somewhere_are_refused() {
         Some(("force_velocity.shortening: cV0 + cV1 L", Some(1))),
         Some(("force_velocity.lengthening: aV0 + aV1 L + aV2 L²", Some(1))),
     );
-    // Only at the longest: the shortest has another refusal.
+    // At the longest only: at the shortest another limit applies first.
     let slope = -2.0 / longest;
     assert_eq!(refused(Some([1.0, slope]), None), on_shortening);
     assert_eq!(refused(Some([1.1, slope]), None), None);
-    // Falls, rises or has its top between: -1 there is the most.
+    // The coefficient falls, rises or has its maximum in between; the limit there is -1.
     for (lengthening, at) in [
         ([0.0, -1.0 / shortest, 0.0], shortest),
         ([-2.0, 1.0 / longest, 0.0], longest),
@@ -61,9 +61,9 @@ fn types_whose_force_falls_with_velocity_somewhere_are_refused() {
     }
 }
 
-/// A first unit that is small is recruited at a thousandth of activation, and not before.
+/// A small first unit is recruited at an activation of 0.001, not before.
 #[test]
-fn nothing_is_recruited_below_a_thousandth_of_activation() {
+fn nothing_is_recruited_below_an_activation_of_0_001() {
     let input =
         |activation| Input { activation, path_length: 0.16_f32, stimulation_frequency: 0.0 };
     let continuous =
@@ -82,7 +82,7 @@ fn nothing_is_recruited_below_a_thousandth_of_activation() {
         }
         assert_eq!(state != idle, fires, "discrete at {activation}");
 
-        // Effective activation follows; frequency does not, before the threshold.
+        // Below the threshold effective activation follows, but the frequency stays 0.
         let mut state = continuous.rest(0.16).expect("in range");
         for _ in 0..2000 {
             let _ = continuous.step(&mut state, input(activation));

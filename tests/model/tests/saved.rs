@@ -1,5 +1,4 @@
-//! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it by
-//! name.
+//! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode};
@@ -10,14 +9,14 @@ use vm_nostd::{
 };
 
 type Params = MuscleParams<2>;
-/// Of a parameter.
+/// Change of a parameter.
 type Change = fn(&mut Params);
 
 fn built<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> Muscle<S, R, 2> {
     model_tests::muscles::built(params, step)
 }
 
-/// Words of a state that some ticks have left.
+/// Words of a saved state after some ticks.
 fn saved<S: Scalar, R: Recruitment<S, 2>>(muscle: &Muscle<S, R, 2>) -> Vec<S::Bits> {
     let path_length = S::path_length(0.16);
     let input =
@@ -29,12 +28,12 @@ fn saved<S: Scalar, R: Recruitment<S, 2>>(muscle: &Muscle<S, R, 2>) -> Vec<S::Bi
     let words: Vec<S::Bits> = muscle.save(&state).collect();
     assert_eq!(words.len(), State::<S, R, 2>::SAVED_WORDS);
     assert_eq!(muscle.restore(words.iter().copied()), Ok(state));
-    // The words themselves say nothing, and are not taken.
+    // Words without a fingerprint are refused.
     assert!(muscle.restore(state.words()).is_err());
     words
 }
 
-fn is_another_muscles<S: Scalar, R: Recruitment<S, 2>>(
+fn assert_refused_as_another_muscles<S: Scalar, R: Recruitment<S, 2>>(
     muscle: &Muscle<S, R, 2>,
     words: &[S::Bits],
     what: &str,
@@ -51,10 +50,10 @@ fn step(seconds: f64) -> TimeStep {
     TimeStep::from_seconds(seconds).expect("a step")
 }
 
-fn only_its_own_muscle_takes_a_state<S: Scalar, R: Mode<S>>() {
+fn only_the_same_muscle_accepts_a_state<S: Scalar, R: Mode<S>>() {
     let ms = TimeStep::MILLISECOND;
     let words = saved::<S, R>(&built(&MUSCLE, ms));
-    // Built again, from the same parameters, it is the same muscle.
+    // A muscle built again from the same parameters accepts it.
     assert!(built::<S, R>(&MUSCLE, ms).restore(words.iter().copied()).is_ok());
     let changes: [(&str, Change); 7] = [
         ("mass", |p| p.mass *= 1.001),
@@ -71,24 +70,32 @@ fn only_its_own_muscle_takes_a_state<S: Scalar, R: Mode<S>>() {
         if what == "fractions" && params.validate().is_err() {
             continue;
         }
-        is_another_muscles(&built::<S, R>(&params, ms), &words, what);
+        assert_refused_as_another_muscles(&built::<S, R>(&params, ms), &words, what);
     }
     for seconds in [0.5e-3, 0.999e-3, 2e-3] {
-        is_another_muscles(&built::<S, R>(&MUSCLE, step(seconds)), &words, "time step");
+        assert_refused_as_another_muscles(
+            &built::<S, R>(&MUSCLE, step(seconds)),
+            &words,
+            "time step",
+        );
     }
 }
 
 fn in_all_modes<S: Scalar>() {
-    only_its_own_muscle_takes_a_state::<S, NaturalContinuous>();
-    only_its_own_muscle_takes_a_state::<S, IntramuscularFes>();
-    only_its_own_muscle_takes_a_state::<S, Discrete<FascicleLength>>();
-    only_its_own_muscle_takes_a_state::<S, Discrete<EffectiveLength>>();
-    // Natural and stimulated states have the same words.
+    only_the_same_muscle_accepts_a_state::<S, NaturalContinuous>();
+    only_the_same_muscle_accepts_a_state::<S, IntramuscularFes>();
+    only_the_same_muscle_accepts_a_state::<S, Discrete<FascicleLength>>();
+    only_the_same_muscle_accepts_a_state::<S, Discrete<EffectiveLength>>();
+    // States of natural recruitment and FES have the same layout.
     let ms = TimeStep::MILLISECOND;
     let natural = saved::<S, NaturalContinuous>(&built(&MUSCLE, ms));
-    is_another_muscles(&built::<S, IntramuscularFes>(&MUSCLE, ms), &natural, "mode");
+    assert_refused_as_another_muscles(&built::<S, IntramuscularFes>(&MUSCLE, ms), &natural, "mode");
     let stimulated = saved::<S, IntramuscularFes>(&built(&MUSCLE, ms));
-    is_another_muscles(&built::<S, NaturalContinuous>(&MUSCLE, ms), &stimulated, "mode");
+    assert_refused_as_another_muscles(
+        &built::<S, NaturalContinuous>(&MUSCLE, ms),
+        &stimulated,
+        "mode",
+    );
 }
 
 #[test]
@@ -102,11 +109,15 @@ fn another_muscle_mode_or_time_step_refuses_a_saved_state() {
 fn arithmetics_refuse_each_others_states() {
     let ms = TimeStep::MILLISECOND;
     let float = saved::<f32, IntramuscularFes>(&built(&MUSCLE, ms));
-    is_another_muscles(&built::<Fixed, IntramuscularFes>(&MUSCLE, ms), &float, "arithmetic");
+    assert_refused_as_another_muscles(
+        &built::<Fixed, IntramuscularFes>(&MUSCLE, ms),
+        &float,
+        "arithmetic",
+    );
 }
 
 #[test]
-fn units_are_part_of_a_muscle() {
+fn motor_units_are_part_of_the_fingerprint() {
     let ms = TimeStep::MILLISECOND;
     type Units = NaturalDiscrete<FascicleLength, 8>;
     let muscle = |sizes: [UnitSizes<'_>; 2]| {
@@ -114,8 +125,8 @@ fn units_are_part_of_a_muscle() {
         Muscle::<f32, Units, 2>::build_with_units(&MUSCLE, &units, ms).expect("a muscle")
     };
     let words = saved(&muscle([UnitSizes::Default(3); 2]));
-    is_another_muscles(&muscle([UnitSizes::Equal(3); 2]), &words, "sizes");
-    is_another_muscles(
+    assert_refused_as_another_muscles(&muscle([UnitSizes::Equal(3); 2]), &words, "sizes");
+    assert_refused_as_another_muscles(
         &muscle([UnitSizes::Default(4), UnitSizes::Default(2)]),
         &words,
         "their number",

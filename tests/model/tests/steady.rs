@@ -1,4 +1,5 @@
-//! The inverse under FES: a force is found again, and an unreachable one gives the nearest.
+//! The inverse model of FES: it reproduces steady forces, and returns the nearest for an
+//! unreachable one.
 
 use firmware::MUSCLE;
 use model_tests::muscles::{TYPES, config, muscles};
@@ -15,13 +16,13 @@ fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Inp
     }
 }
 
-/// A force in N as an arithmetic has it.
+/// A force in N, in an arithmetic.
 fn force<S: Scalar>(newtons: f64) -> S::Force {
     S::ONE.force(&S::force_factor(newtons))
 }
 
-/// Of any muscle: the force that a stimulation holds is held by the stimulation that its inverse
-/// names.
+/// The steady force of a stimulation is the steady force of the stimulation that the inverse
+/// returns for it.
 fn there_and_back<S: Scalar>(
     params: &MuscleParams<TYPES>,
     (activation, path, frequency): (f64, f64, f64),
@@ -38,12 +39,12 @@ fn there_and_back<S: Scalar>(
     let back = steady.activation_for(there.force, input.path_length, input.stimulation_frequency);
     let again = steady.force(vm_nostd::Input { activation: back.activation, ..input });
     let difference = (S::newtons(again.force) - S::newtons(there.force)).abs();
-    // In fixed point a force is told to 1 mN, and the tendon's extension to 6e-8 L_ce0.
-    // At the limit of reachable forces, within the tolerance of reachability.
+    // Fixed point resolves force to 1 mN and tendon extension to 6e-8 L_ce0.
+    // Tolerance at the limit of reachable forces.
     let ends = if activation == 0.0 || activation > 0.999_999 { 1e-4 } else { 0.0 };
     let most = (unit + ends) * f0 + 2e-3;
     prop_assert!(difference <= most, "{:e} F0 {:?} {:?}", difference / f0, there, back);
-    // A held force is reachable.
+    // A steady force is reachable.
     prop_assert!(!back.status.contains(Status::FORCE_UNREACHABLE), "{:?} {:?}", there, back);
     Ok(())
 }
@@ -52,7 +53,7 @@ proptest! {
     #![proptest_config(config(2000))]
 
     #[test]
-    fn forces_of_any_muscle_are_found_again(
+    fn the_inverse_reproduces_steady_forces_of_any_muscle(
         params in muscles(),
         activation in prop_oneof![0.0..=1.0_f64, Just(1.0), Just(0.0), Just(0.999_999_9)],
         path in 0.0..=1.0_f64,
@@ -78,17 +79,17 @@ fn unreachable<S: Scalar>() {
         assert_eq!(found.status, Status::FORCE_UNREACHABLE, "{wanted} N");
         assert_eq!(Steady { status: Status::empty(), ..found }, nearest, "{wanted} N");
     }
-    // Without stimulation nothing but the passive force is there.
+    // Without stimulation only the passive force is reachable.
     let found = steady.activation_for(force::<S>(50.0), path, S::quantity(0.0));
     assert_eq!(found.status, Status::FORCE_UNREACHABLE);
     assert!(newtons(found) < 1.0);
-    // A path that cannot be is taken at its end, and flagged as in a tick.
+    // A path out of range is clipped and flagged as in a tick.
     let found = steady.activation_for(force::<S>(20.0), S::path_length(0.3), frequency);
     assert!(found.status.contains(Status::PATH_LENGTH_CLIPPED));
 }
 
 #[test]
-fn unreachable_forces_are_flagged_with_the_nearest() {
+fn unreachable_forces_are_flagged_and_the_nearest_is_returned() {
     unreachable::<f32>();
     unreachable::<Fixed>();
     let steady = SteadyFes::<f32, 2>::build(&MUSCLE).expect("a muscle");
@@ -97,8 +98,8 @@ fn unreachable_forces_are_flagged_with_the_nearest() {
     assert_eq!(found.activation, 0.0);
 }
 
-/// The greatest force that can be held, and whatever is near it, is held with all there is: never
-/// with nothing.
+/// For forces around the greatest steady one the inverse returns (nearly) full activation, never
+/// none.
 fn the_greatest<S: Scalar>() {
     let steady = SteadyFes::<S, 2>::build(&MUSCLE).expect("a muscle");
     for path in 0..=100 {
@@ -123,20 +124,20 @@ fn the_greatest<S: Scalar>() {
 }
 
 #[test]
-fn the_greatest_force_is_held_with_all_there_is() {
+fn forces_near_the_greatest_take_full_activation() {
     the_greatest::<f32>();
     the_greatest::<f64>();
     the_greatest::<Fixed>();
 }
 
-/// With tendons of many fascicle lengths a force may be in balance where it is not held: that is
-/// not answered without a flag.
+/// With very long tendons a force may have an unstable equilibrium, which is only returned with a
+/// flag.
 #[test]
-fn where_there_are_several_balances_the_answer_holds_or_is_flagged() {
+fn with_several_equilibria_the_result_is_stable_or_flagged() {
     let mut flagged = 0;
     for ratio in [30.0, 39.2, 48.0] {
         let (fascicle, tendon) = (0.02, 0.02 * ratio);
-        // Mostly fast, and long: Af falls steeply with length at a low frequency.
+        // Mostly fast fibres and long fascicles: Af falls steeply with length at a low frequency.
         let mut muscle = MuscleParams {
             mass: 12e-3,
             fascicle_length: fascicle,
@@ -170,7 +171,7 @@ fn where_there_are_several_balances_the_answer_holds_or_is_flagged() {
     assert!(flagged > 0);
 }
 
-/// The model itself comes to rest where its steady state says.
+/// The model settles at the force of the steady state.
 #[test]
 fn the_model_settles_in_its_steady_state() {
     let muscle = FesMuscle::<f32, 2>::build(&MUSCLE, TimeStep::MILLISECOND).expect("a muscle");
