@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::Duration;
 
-/// Port for a debugger.
+/// TCP port of a debugger.
 pub struct Port(u16);
 
 impl Port {
@@ -19,13 +19,13 @@ impl Port {
         vec!["-gdb".to_owned(), format!("tcp:127.0.0.1:{},nodelay=on", self.0)]
     }
 
-    /// Stops the machine.
+    /// Attaches, which stops the machine.
     pub fn attach(&self) -> Debugger {
         self.attached(TcpStream::connect(("127.0.0.1", self.0)).expect("an emulator"))
     }
 
-    /// Attaches as soon as there is a machine.
-    pub fn attach_at_last(&self) -> Debugger {
+    /// Attaches as soon as the machine runs.
+    pub fn wait_and_attach(&self) -> Debugger {
         for _ in 0..300 {
             if let Ok(stream) = TcpStream::connect(("127.0.0.1", self.0)) {
                 return self.attached(stream);
@@ -44,16 +44,16 @@ impl Port {
 /// A debugger attached to a stopped machine.
 pub struct Debugger(TcpStream);
 
-/// Bytes per packet.
+/// Maximum packet size, bytes.
 const CHUNK: usize = 512;
 
 impl Debugger {
-    /// Continues.
-    pub fn go_on(&mut self) {
+    /// Continues execution.
+    pub fn resume(&mut self) {
         self.send("c");
     }
 
-    /// Stops.
+    /// Stops execution.
     pub fn stop(&mut self) {
         self.0.write_all(&[0x03]).expect("a line");
         while !self.packet().starts_with('T') {}

@@ -23,8 +23,8 @@ pub fn skip(reason: &str) {
     writeln!(std::io::stderr(), "SKIPPED: {reason}").expect("standard error is open");
 }
 
-/// Builds a program for a board; an error if the target's library is missing. Panics if it does
-/// not build.
+/// Builds a program for a board; an error if the target's library is missing. Panics if the build
+/// fails.
 pub fn build(board: Board, program: &str) -> Result<PathBuf, TargetError> {
     build_with(board, program, &[])
 }

@@ -1,4 +1,4 @@
-//! The stimulator's image in QEMU, with a host that talks to it and reads its pins.
+//! The stimulator's image in QEMU, a client for it, and its pins.
 
 use crate::{build, skip};
 use firmware::Stimulus;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use stimulator_tests::host::READINGS;
 
-/// The firmware's image, unless skipped.
+/// Builds the firmware's image; `None` if the test is skipped.
 pub fn image() -> Option<PathBuf> {
     let built = build(STM32F405, STIMULATOR).and_then(|image| {
         let version = std::process::Command::new(host_sim::target::QEMU).arg("--version").output();
@@ -25,7 +25,7 @@ pub fn image() -> Option<PathBuf> {
     built.map_err(|reason| skip(&reason.to_string())).ok()
 }
 
-/// A machine with a log of its pins.
+/// A running machine with a log of its pins.
 pub struct Machine {
     line: Emulated,
     receiver: Receiver,
@@ -39,10 +39,10 @@ pub fn stimulus(amplitude_ua: u32) -> Stimulus {
     Stimulus { amplitude_ua, width_us: 200, gap_us: 50, frequency_tenths_pps: 1000, recovery: 1 }
 }
 
-/// Messages that keep the host heard for some 10 ms.
+/// Number of keep-alive messages, enough for about 10 ms.
 const KEPT_ALIVE: usize = 400;
 
-/// Most bytes in flight to the firmware, which buffers 4,000.
+/// Limit of bytes in flight to the firmware, which buffers 4,000.
 const WINDOW: usize = 3600;
 
 /// Timeout of the machine.
@@ -73,7 +73,7 @@ pub fn drive() -> Request {
 pub enum Said {
     /// Done.
     Done,
-    /// Supervision refused.
+    /// Arming was refused.
     NotArmed(NotArmed),
     /// Report.
     Report(Report),
@@ -94,7 +94,7 @@ impl Machine {
         Self::greeted(Emulated::run(image, &all).expect("a machine"), log)
     }
 
-    /// The machine after a restart.
+    /// Greets the machine again after a reset.
     pub fn greeted_again(self) -> Self {
         Self::greeted(self.line, self.log)
     }
@@ -113,7 +113,7 @@ impl Machine {
 
     /// The same, without waiting for the last answers.
     ///
-    /// Keeps the firmware's buffer filled, so that the next request is always there.
+    /// Keeps the firmware's buffer filled, so that the next request is always available.
     pub fn converse(&mut self, requests: &[Request], unanswered: usize) -> Vec<Said> {
         let mut frames = requests.iter();
         let (mut lengths, mut said) = (VecDeque::new(), Vec::new());
@@ -171,10 +171,10 @@ impl Machine {
         }
     }
 
-    /// Acknowledges the latched fault, arms, and gives pulses for a while; then sends the script.
-    /// Returns the report before it, and the answers.
+    /// Acknowledges the latched fault, arms and stimulates for a while, then sends `then`. Returns
+    /// the report before `then` and its answers.
     ///
-    /// In one script, because the time between two scripts is arbitrary.
+    /// All in one script, because the time between two scripts is arbitrary.
     pub fn stimulated(&mut self, latched: Fault, then: &[Request]) -> (Report, Vec<Said>) {
         let mut requests =
             vec![Request::Readings(READINGS), drive(), Request::Acknowledge(latched), Request::Arm];
@@ -190,9 +190,9 @@ impl Machine {
         (report, after)
     }
 
-    /// Settled pins. Pulses come every 10 ms of the machine's time, which may be slow on a busy
-    /// host.
-    pub fn pins_at_last(&self) -> Pins {
+    /// Waits until the pins settle. Pulses come every 10 ms of the machine's time, which may run
+    /// slowly on a busy host.
+    pub fn settled_pins(&self) -> Pins {
         let started = Instant::now();
         let mut pins = self.pins();
         loop {

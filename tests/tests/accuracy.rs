@@ -1,4 +1,4 @@
-//! Every comparison of `vm verify` passes, and each check fails when it should.
+//! Every comparison of `vm verify` passes, and each check can fail.
 
 use host_sim::engine::Class;
 use host_sim::metrics::ForceError;
@@ -6,7 +6,7 @@ use host_sim::tolerance;
 use host_sim::{golden, readme, verify};
 
 #[test]
-fn every_row_is_within_its_tolerance_and_the_documents_say_so() {
+fn every_row_is_within_its_tolerance_and_documented() {
     let report = verify::verify().expect("all scenarios run");
     let failed: Vec<String> = report
         .rows
@@ -24,7 +24,7 @@ fn every_row_is_within_its_tolerance_and_the_documents_say_so() {
 }
 
 #[test]
-fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
+fn tolerances_are_within_the_promised_limits_and_have_reasons() {
     let f0 = host_sim::scenario::paper_muscle().f0();
     for (key, entry) in tolerance::table() {
         let (promised, promised_rms) = tolerance::promise(&key, Class::Standard, f0);
@@ -38,7 +38,7 @@ fn no_tolerance_is_looser_than_what_is_promised_and_each_has_a_reason() {
 }
 
 #[test]
-fn the_promises_are_those_of_the_project() {
+fn the_promised_limits_are_those_of_the_project() {
     let promise = |scenario: &str, arithmetic: &str| {
         let key = [scenario, "continuous", arithmetic, "reference"].map(str::to_owned);
         tolerance::promise(&key, Class::Standard, 265.909)
@@ -58,7 +58,7 @@ fn the_promises_are_those_of_the_project() {
 }
 
 #[test]
-fn an_error_of_force_is_seen() {
+fn an_error_of_force_is_detected() {
     let error = ForceError::between(&[1.0, 2.0, 3.0], &[1.0, 2.5, 3.0], 100.0);
     assert_eq!(error.max, 0.5);
     assert!((error.bias + 0.5 / 3.0).abs() < 1e-12);
@@ -67,7 +67,7 @@ fn an_error_of_force_is_seen() {
 }
 
 #[test]
-fn all_bits_are_the_golden_ones() {
+fn all_bits_equal_the_golden_bits() {
     let differences = golden::differences().expect("golden bits to compare with");
     assert!(
         differences.is_empty(),

@@ -7,7 +7,7 @@ use host_sim::figures::{ARM_ACTIVATIONS, ARM_START};
 use host_sim::reference::Mode;
 
 const TIME_STEP: f64 = 1e-3;
-/// In which every error of force has had its effect, and swings still grow, s.
+/// Duration, s: long enough for force errors to act, and for swings to still grow.
 const DURATION: f64 = 5.0;
 
 fn drive(mode: Mode, arithmetic: Arithmetic) -> Drive {
@@ -63,7 +63,7 @@ fn energy_is_balanced() {
 
 /// The energy error is that of the coupling: it falls to a quarter with half the tick.
 #[test]
-fn the_balance_is_of_second_order() {
+fn the_coupling_is_of_second_order() {
     let coarse = drive(Mode::Continuous, Arithmetic::F64);
     let fine = Drive { time_step: TIME_STEP / 2.0, ..coarse };
     let ratio = run(&coarse).1.energy_error / run(&fine).1.energy_error;
@@ -72,7 +72,7 @@ fn the_balance_is_of_second_order() {
 
 /// Over 5 s, so that errors of force affect the angles.
 #[test]
-fn the_arm_moves_as_with_the_reference() {
+fn all_arithmetics_move_the_arm_as_the_reference() {
     for mode in MODES {
         let (reference, _) = run(&drive(mode, Arithmetic::Reference));
         // Degrees. FES starts at full force; with effective length the arm is unstable, and
@@ -99,7 +99,7 @@ fn effective_length_makes_the_arm_unstable() {
             let unstable = mode == Mode::DiscreteEffectiveLength;
             let swings = outcome.swings.expect("long enough");
             assert_eq!(swings.settle(), !unstable, "{mode:?} {arithmetic:?}: {outcome:?}");
-            // The elbow alone oscillates, long after it had settled.
+            // Only the elbow oscillates, and long after it had settled without effective length.
             assert_eq!(swings.late[1] > 5.0, unstable, "{mode:?} {arithmetic:?}");
             assert_eq!(swings.growth()[1] > 0.5, unstable, "{mode:?} {arithmetic:?}");
             assert!(!outcome.out_of_range);
@@ -107,9 +107,9 @@ fn effective_length_makes_the_arm_unstable() {
     }
 }
 
-/// Which runs are judged.
+/// Judgement of settling, oscillation and divergence.
 #[test]
-fn an_arm_that_no_muscle_moves_comes_to_rest() {
+fn an_unstimulated_arm_comes_to_rest() {
     for activation in [0.0, 0.05] {
         let activations = Activations { shoulder: activation, elbow: activation, biarticular: 0.0 };
         let slow =
@@ -128,7 +128,7 @@ fn an_arm_that_no_muscle_moves_comes_to_rest() {
 }
 
 #[test]
-fn bad_values_are_named() {
+fn invalid_values_are_named() {
     let refuse = |change: &dyn Fn(&mut Drive)| {
         let mut drive = drive(Mode::Continuous, Arithmetic::F32);
         change(&mut drive);
@@ -142,7 +142,7 @@ fn bad_values_are_named() {
     assert!(message.starts_with("elbow angle = 171.88"), "{message}");
     assert!(message.ends_with("must be 0 to 155 degrees"), "{message}");
     assert_eq!(refuse(&|drive| drive.time_step = 1e-5), "tick = 0.01: must be 0.1 to 2 ms");
-    // A posture in which a muscle is slack at any fascicle length.
+    // A posture in which a muscle's tendon is slack at any fascicle length.
     let message = refuse(&|drive| drive.start = [135.0_f64, 155.0].map(f64::to_radians));
     let named = "start = 135.000, 155.000 degrees: elbow flexor: path_length = ";
     assert!(message.starts_with(named), "{message}");

@@ -1,4 +1,5 @@
-//! The C library: its header is current, and C programs on host and target have the bits of Rust's.
+//! The C library: its header is current, and C programs on host and target compute the same bits as
+//! Rust.
 //!
 //! Without a C compiler or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set they fail.
 
@@ -16,7 +17,7 @@ fn root() -> PathBuf {
 }
 
 #[test]
-fn the_header_is_what_the_library_has() {
+fn the_header_is_current() {
     let folder = root().join("vm-nostd/c");
     let config =
         cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
@@ -36,10 +37,10 @@ fn the_header_is_what_the_library_has() {
     assert!(current == text, "VM_WRITE=1 cargo test --release -p system-tests --test c_api");
 }
 
-/// Rows that a C program plays.
+/// Number of rows that the C program steps.
 const ROWS: usize = 1500;
 
-/// Inputs of both arithmetics: steps of activation and frequency on a path that moves.
+/// Inputs of both arithmetics: steps of activation and frequency on a moving path.
 struct Inputs {
     float: Vec<Input<f32>>,
     /// Per mille, µm, tenths of pps.
@@ -99,7 +100,7 @@ impl Inputs {
         text
     }
 
-    /// Outputs of Rust, in the order of the C program.
+    /// Outputs of the Rust library, in the order of the C program.
     fn bytes(&self) -> Vec<u8> {
         let fixed: Vec<Input<Fixed>> =
             self.integer.iter().map(|&(a, l, f)| Input::<Fixed>::from_integers(a, l, f)).collect();
@@ -137,7 +138,7 @@ fn played<S: Scalar<Bits = u32>>(inputs: &[Input<S>], fes: bool) -> Vec<u8> {
     all.into_iter().flatten().flat_map(u32::to_le_bytes).collect()
 }
 
-/// Builds the library; for the host, where no target is given.
+/// Builds the library for a target, by default the host.
 fn library(target: Option<&str>) -> PathBuf {
     let folder = root().join("target/c-library");
     let mut command = Command::new(env!("CARGO"));
@@ -153,7 +154,7 @@ fn library(target: Option<&str>) -> PathBuf {
     folder.join(target.unwrap_or("")).join("release/libvm_nostd.a")
 }
 
-/// Compiles the C program for a platform; none where there is no compiler.
+/// Compiles the C program for a platform; `None` without a compiler.
 fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) -> Option<PathBuf> {
     let program = folder.join("golden");
     let sources = root().join("tests/c");
@@ -181,7 +182,8 @@ fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) ->
     }
 }
 
-/// A program's words equal Rust's. Its exit status is the line of a misuse that was not refused.
+/// Asserts that a program's words equal Rust's. A failed check in the C program sets its exit
+/// status to the line number.
 fn compare(output: &Output) {
     assert!(output.status.success(), "tests/c/golden.c: {}", output.status);
     let expected = inputs().bytes();
@@ -194,7 +196,7 @@ fn compare(output: &Output) {
 }
 
 #[test]
-fn a_c_program_on_the_host_has_the_bits_of_rust() {
+fn a_c_program_on_the_host_has_the_same_bits() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = library(None);
     let library = library.to_str().expect("a path");
@@ -204,7 +206,7 @@ fn a_c_program_on_the_host_has_the_bits_of_rust() {
 }
 
 #[test]
-fn a_c_program_on_the_target_has_the_bits_of_rust_and_no_panic() {
+fn a_c_program_on_the_target_has_the_same_bits_and_no_panic() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = library(Some(STM32F405.triple));
     let script = root().join("tests/c/target.ld");

@@ -1,4 +1,4 @@
-//! Cycles: what `vm cycles` says of a function does not depend on how it was traced.
+//! `vm cycles`: the profile of a function does not depend on the tracer.
 //!
 //! Without the thumb target or QEMU these tests print SKIPPED.
 
@@ -8,9 +8,8 @@ use std::path::Path;
 use std::time::Duration;
 use system_tests::{build, skip};
 
-/// Profile of a direct call of `exp(1.5)` of libm, in `f64`, which is linked for building muscles.
-/// A direct call takes the upper part of RAM, where the stimulator has its statics: the image is
-/// another one.
+/// Profile of a direct call of libm's `exp(1.5)` in `f64`. The image is not the stimulator's, whose
+/// statics are in the upper RAM that a direct call needs.
 fn profile(image: &Path, machine: &str, tracer: Tracer) -> Result<Profile, ProfileError> {
     let (function, arguments) = ("libm::math::exp::exp", [Argument::Double(1.5)]);
     of_image(image, function, Some(&arguments), machine, tracer, Duration::from_secs(60))
@@ -33,13 +32,13 @@ fn the_plugin_and_the_log_show_the_same_execution() {
     };
     assert_eq!(profiles[0].calls, profiles[1].calls);
     assert_eq!(profiles[0].executions, profiles[1].executions);
-    // The design's figure for it is 3748 cycles, by another estimator and compiler.
+    // Another estimator and compiler gave 3748 cycles.
     let typical = profiles[0].calls[0].cycles[1];
     assert!((3400..=4100).contains(&typical), "{typical}");
 }
 
 #[test]
-fn a_machine_that_is_not_there_is_named_by_the_emulator() {
+fn an_unknown_machine_is_reported_by_the_emulator() {
     let image = match build(STM32F405, "golden") {
         Ok(image) => image,
         Err(reason) => return skip(&reason.to_string()),

@@ -1,4 +1,4 @@
-//! The documents: their length and links, the README's C code and picture.
+//! Documents: length, links, line width of comments, and the README's C code and picture.
 
 use host_sim::readme;
 use host_sim::target::root;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use system_tests::skip;
 
-/// Files below a folder, by the end of their name; not what is built, and nothing hidden.
+/// Files with an extension below a folder, without hidden and build folders.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -29,7 +29,7 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).expect("a text")
 }
 
-/// Three minutes of reading for the front page, ten for a package.
+/// Reading time: three minutes for the README, ten for a package's.
 #[test]
 fn the_readmes_are_short() {
     let limits = [
@@ -59,7 +59,7 @@ fn comments_end_by_column_100() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// A heading as the part of a link after `#`.
+/// The anchor of a heading, as in a link after `#`.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() }).collect()
@@ -80,7 +80,7 @@ fn links(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_link_leads_to_a_file_and_a_heading_of_it() {
+fn every_link_has_an_existing_target() {
     let mut broken = Vec::new();
     let mut checked = 0;
     for document in files(&root(), "md") {
@@ -104,7 +104,7 @@ fn every_link_leads_to_a_file_and_a_heading_of_it() {
 }
 
 #[test]
-fn links_and_headings_are_read_as_browsers_do() {
+fn links_and_headings_are_parsed() {
     assert_eq!(anchor(" Why not 1,000 cycles and 8 KiB"), "why-not-1000-cycles-and-8-kib");
     let text = "# A b\n[x](one.md#two) and\n```sh\n[y](three)\n```\n![z](four.svg)";
     assert_eq!(links(text), ["one.md#two", "four.svg"]);
@@ -112,7 +112,7 @@ fn links_and_headings_are_read_as_browsers_do() {
 }
 
 #[test]
-fn the_picture_is_what_the_model_computes() {
+fn the_picture_is_current() {
     let picture = readme::picture().expect("a picture");
     let current = readme::PICTURE.is_current(&picture).expect("a picture in the repository");
     assert!(current, "{} has drifted: cargo vm readme --write", readme::PICTURE.file());

@@ -1,8 +1,7 @@
-//! The stimulator as it would be flashed, in QEMU: the host's bits over its USART, and the main
-//! faults.
+//! The stimulator's image in QEMU: the host's bits over its USART, and the main faults.
 //!
-//! Requests of a fault's script wait in the line before the firmware looks for them: time is its
-//! own, and does not depend on how fast this host is.
+//! All requests of a script are queued on the line before the firmware reads them, so that the
+//! firmware's timing does not depend on the speed of the host.
 
 use firmware::link::{Readings, Report, Request};
 use firmware::safety::{CHANNELS, Fault, NotArmed, State};
@@ -20,7 +19,7 @@ fn data(name: &str) -> PathBuf {
 }
 
 #[test]
-fn traces_played_to_the_firmware_have_the_bits_of_the_hosts_run() {
+fn traces_played_to_the_firmware_have_the_hosts_bits() {
     let Some(image) = image() else { return };
     let muscle =
         muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
@@ -35,12 +34,12 @@ fn traces_played_to_the_firmware_have_the_bits_of_the_hosts_run() {
         assert_eq!(played.rows.len(), trace.inputs.len());
         let Report { longest_us, late, frames, .. } = played.report;
         assert_eq!((late, frames.broken, frames.refused), (0, 0, 0));
-        // By instructions of 8 ns each.
+        // One instruction takes 8 ns.
         assert!((10..=80).contains(&longest_us), "{longest_us} us");
     }
 }
 
-/// A fault, what is sent to inject it, and whether its cause goes away with good readings.
+/// Faults and the request that injects each.
 fn cases() -> Vec<(Fault, Request)> {
     let readings = |readings| Request::Readings(readings);
     let wanted = |stimulus| Request::Drive([Some(stimulus), None, None, None]);
@@ -59,17 +58,17 @@ fn cases() -> Vec<(Fault, Request)> {
             readings(Readings { impedance_ohm: [None, None, Some(99), None], ..READINGS }),
         ),
         (Fault::SensorMissing, readings(Readings { path_um: None, ..READINGS })),
-        // 0.29 m, for which a path takes longer than a reading may be old.
+        // 0.29 m; at the limit of path speed this takes longer than a reading may be old.
         (Fault::SensorJump, readings(Readings { path_um: Some(450_000), ..READINGS })),
         (Fault::Stopped, Request::Stop),
     ]
 }
 
 #[test]
-fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
+fn faults_end_in_neutral_on_the_emulated_chip() {
     let Some(image) = image() else { return };
     let mut machine = Machine::start(&image, Vec::new());
-    // Off at boot, whatever is asked for.
+    // Off after boot: arming is refused.
     let said =
         machine.script(&[Request::Readings(READINGS), drive(), Request::Arm, Request::Report]);
     assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
@@ -83,32 +82,31 @@ fn the_main_faults_end_in_neutral_on_the_emulated_chip() {
         let Said::Report(after) = said[1] else { panic!("{said:?}") };
         assert_eq!(after.state, State::Latched(fault), "{after:?}");
         assert_eq!(said[2], Said::NotArmed(NotArmed::NotAcknowledged));
-        // In the report that follows it. How many ticks that takes depends on how fast this host
-        // sends it.
+        // The fault is in a later report; the number of ticks depends on the speed of the host.
         assert!(after.ticks > before.ticks);
         assert_eq!((after.late, after.frames.broken), (0, 0), "{fault:?}: {after:?}");
-        // There were pulses; now there is no way for a current, and none is opened again.
+        // Pulses were given; now all outputs are off and stay off.
         let closed = pins.closed;
         pins = machine.pins();
         assert!(pins.closed > closed + 10, "{fault:?}: {pins:?}");
         assert_eq!(pins.bridge, 0, "{fault:?}");
         machine.script(&kept_alive());
-        // A channel whose pulse was cut short was left to discharge for a while.
+        // A channel whose pulse was interrupted may still discharge for a while.
         let later = machine.pins();
         assert_eq!((later.closed, later.channels), (pins.closed, 0), "{fault:?}: pulses after it");
         latched = fault;
     }
 
-    // A host that says nothing.
+    // A silent host.
     machine.stimulated(latched, &[]);
-    let pins = machine.pins_at_last();
+    let pins = machine.settled_pins();
     assert_eq!((pins.bridge, pins.channels), (0, 0));
     assert_eq!(machine.report().state, State::Latched(Fault::Silence));
 }
 
-/// One bit of a muscle's state in RAM: a fault, not a force.
+/// A flipped bit of a muscle's state in RAM is a fault and does not act on the force.
 #[test]
-fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
+fn a_flipped_bit_in_memory_is_a_fault_on_the_emulated_chip() {
     let Some(image) = image() else { return };
     let port = Port::free();
     let mut machine = Machine::start(&image, port.arguments());
@@ -123,18 +121,18 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     let (address, size) = symbol(&image, "local_init_banks");
     let mut debugger = port.attach();
     let memory = debugger.read(address, size);
-    // Tendon extension, velocity and path lie one behind the other, in the bank of the tick and
-    // maybe in the other.
+    // Tendon extension, velocity and path are consecutive, in the bank of the tick and possibly in
+    // the other one.
     let pattern: Vec<u8> = words[..3].iter().flat_map(|word| word.to_le_bytes()).collect();
     let found: Vec<usize> = (0..memory.len() - pattern.len())
         .filter(|&at| memory[at..].starts_with(&pattern))
         .collect();
-    // The link overwrites its own bank before anybody reads it.
+    // The link's bank is overwritten before it is read.
     assert!((1..=2).contains(&found.len()), "the state in {size} bytes: {found:?}");
     for at in found {
         debugger.write(address + at as u64, &[memory[at] ^ 0x01]);
     }
-    debugger.go_on();
+    debugger.resume();
 
     let said = machine.script(&[
         Request::Readings(READINGS),
@@ -147,21 +145,20 @@ fn a_bit_that_flips_in_memory_is_a_fault_on_the_emulated_chip() {
     ]);
     let Said::Report(report) = said[1] else { panic!("{said:?}") };
     assert_eq!(report.wrong, Some(Fault::Checksum));
-    // Another fault than the one that was named, and it lasts: no current by way of that muscle.
+    // Acknowledging another fault has no effect, and this one persists: stimulation stays off.
     assert!(matches!(said[4], Said::NotArmed(_)), "{said:?}");
     assert_eq!(said[6], Said::NotArmed(NotArmed::StillThere(Fault::Checksum)));
     assert_eq!(machine.pins(), Pins::default());
-    // A muscle at rest again, with checksums of its own, ends it.
+    // Resetting the muscle to rest, with new checksums, clears it.
     machine.script(&[rest]);
     let (report, _) = machine.stimulated(Fault::Checksum, &[]);
     assert_eq!(report.wrong, None);
     assert!(machine.pins().closed > 10);
 }
 
-/// How often the bridge was closed when a debugger stops a busy machine, and once it has gone on,
-/// with an instruction in place of the tick's first one if there is to be one; both while a host is
-/// still heard.
-fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
+/// Bridge closures before a debugger stops a stimulating machine, and after it continues until the
+/// pins settle. `instruction` replaces the first one of the tick.
+fn closures_before_and_after(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     let port = Port::free();
     let mut machine = Machine::start(image, port.arguments());
     let mut requests =
@@ -172,42 +169,41 @@ fn closed_around(image: &Path, instruction: Option<u16>) -> (u32, u32) {
     let mut debugger = port.attach();
     if let Some(instruction) = instruction {
         let (address, _) = symbol(image, "SysTick");
-        // Addresses of functions are odd.
+        // Bit 0 of a function's address marks Thumb code.
         debugger.write(address & !1, &instruction.to_le_bytes());
     }
     let before = machine.pins().closed;
-    debugger.go_on();
-    let pins = machine.pins_at_last();
+    debugger.resume();
+    let pins = machine.settled_pins();
     assert_eq!((pins.bridge, pins.channels), (0, 0));
     (before, pins.closed)
 }
 
-/// How often the bridge can be closed, at most, in so many ticks, less than the time between two
-/// pulses of a channel: twice for a pulse, and each channel's comes behind another's.
-fn closed_in(ticks: u32) -> u32 {
-    let one_after_another = (ticks * TICK_US).div_ceil(stimulus(10_000).duration_us());
-    2 * one_after_another.min(CHANNELS as u32)
+/// Largest number of bridge closures in a number of ticks shorter than the inter-pulse interval of
+/// a channel: two per pulse; pulses of different channels do not overlap.
+fn most_closures(ticks: u32) -> u32 {
+    let consecutive = (ticks * TICK_US).div_ceil(stimulus(10_000).duration_us());
+    2 * consecutive.min(CHANNELS as u32)
 }
 
-/// A branch to itself where the tick begins: the pulse timer stops without it.
+/// The first instruction of the tick is a branch to itself: the pulse timer stops without the tick.
 #[test]
-fn a_tick_that_never_ends_leaves_no_current_on_the_emulated_chip() {
+fn a_hanging_tick_ends_stimulation_on_the_emulated_chip() {
     let Some(image) = image() else { return };
-    // Without the hang, pulses go on for as long as the host is heard, and a tenth of a second
-    // more.
-    let (before, after) = closed_around(&image, None);
+    // Without the hang, pulses continue until 0.1 s after the last message of the host.
+    let (before, after) = closures_before_and_after(&image, None);
     assert!(before > 20 && after > before + 40, "{before}, {after}");
-    // With it, there is a tick that had begun, and two ticks' patience.
-    let (before, after) = closed_around(&image, Some(0xe7fe));
-    assert!(before > 20 && after <= before + closed_in(3), "{before}, {after}");
+    // With it, the rest of the current tick and a timeout of two ticks.
+    let (before, after) = closures_before_and_after(&image, Some(0xe7fe));
+    assert!(before > 20 && after <= before + most_closures(3), "{before}, {after}");
 }
 
-/// An instruction that is none where the tick begins: the core's fault handler starts the chip
-/// again, and everything is off at boot.
+/// The first instruction of the tick is undefined: the core's fault handler resets the chip, and
+/// all outputs are off after boot.
 #[test]
-fn a_fault_of_the_core_leaves_no_current_on_the_emulated_chip() {
+fn a_core_fault_ends_stimulation_on_the_emulated_chip() {
     let Some(image) = image() else { return };
-    let (before, after) = closed_around(&image, Some(0xde00));
-    // Pulses go on until the next tick begins.
-    assert!(before > 20 && after <= before + closed_in(1), "{before}, {after}");
+    let (before, after) = closures_before_and_after(&image, Some(0xde00));
+    // Pulses continue until the next tick.
+    assert!(before > 20 && after <= before + most_closures(1), "{before}, {after}");
 }

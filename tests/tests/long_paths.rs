@@ -1,5 +1,5 @@
-//! The longest path scales the parallel elastic element and is no limit: paths are accepted up to
-//! the limit of an equation.
+//! The longest path of the muscle's parameters scales the parallel elastic element but does not
+//! limit paths: they are accepted to the end of the validity range.
 
 use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};
@@ -10,7 +10,7 @@ use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
 use vm_nostd::{ContinuousMuscle, Fixed, Scalar, Status, TimeStep};
 
-/// Largest error, % of F0, and what was flagged, of an arithmetic against the reference.
+/// Largest error (% of F0) and flags of an arithmetic against the reference.
 fn error(muscle: &Muscle, mode: Mode, arithmetic: Arithmetic, trace: &InputTrace) -> (f64, Status) {
     let run = |arithmetic| engine::run(muscle, mode, arithmetic, trace).expect("a run");
     let (rows, reference) = (run(arithmetic), run(Arithmetic::Reference));
@@ -36,11 +36,11 @@ fn smooth(x: f64) -> f64 {
 }
 
 #[test]
-fn a_path_beyond_the_longest_costs_nothing() {
+fn a_path_beyond_the_longest_is_as_accurate() {
     let muscle = paper_muscle();
     for beyond in [1e-3, 5e-3, 1e-2] {
         for mode in [Mode::Continuous, Mode::Fes] {
-            // Held there, and stretched to there while it is active.
+            // Held beyond it, and stretched beyond it while active.
             let there = muscle.L_mt_max + beyond;
             let traces = [
                 inputs(|t| [0.8 * smooth(t / 0.5), there, 25.0]),
@@ -58,8 +58,8 @@ fn a_path_beyond_the_longest_costs_nothing() {
 }
 
 #[test]
-fn fes_from_a_path_of_33_3_cm_with_32_9_cm_as_the_longest() {
-    // As the example of the authors' manual, p. 51, starts; the muscle is one of such a path.
+fn fes_on_a_path_longer_than_the_longest() {
+    // Start of the example in the authors' manual, p. 51, with a muscle of such a path.
     let longest =
         Muscle { mass: 0.25, L_ce0: 0.134, L_se0: 0.143, L_mt_max: 0.329, ..paper_muscle() };
     let trace =
@@ -72,12 +72,12 @@ fn fes_from_a_path_of_33_3_cm_with_32_9_cm_as_the_longest() {
 }
 
 #[test]
-fn the_domain_ends_where_no_activation_keeps_the_fascicles_where_n_f_is_defined() {
+fn the_validity_range_ends_where_n_f_is_undefined_at_any_activation() {
     let muscle = paper_muscle();
     let (_, longest) = model_muscle::path_domain(&muscle);
     assert!(longest > muscle.L_mt_max + 0.01, "{longest}");
     let (_, most) = MUSCLE.fascicle_domain();
-    // At rest the fascicles are beyond it, which is flagged; passive forces are valid throughout.
+    // At rest the fascicles are beyond it, which is flagged; passive forces are always valid.
     let trace = inputs(|t| [0.0, 0.18 + (longest - 1e-6 - 0.18) * smooth(t / 1.2), 20.0]);
     for arithmetic in [Arithmetic::F32, Arithmetic::Fixed] {
         let (error, flags) = error(&muscle, Mode::Continuous, arithmetic, &trace);
@@ -114,7 +114,7 @@ fn clips_at_the_end<S: Scalar>() {
 }
 
 #[test]
-fn paths_are_clipped_and_flagged_at_the_ends_of_the_domain() {
+fn paths_are_clipped_and_flagged_at_the_ends_of_the_validity_range() {
     clips_at_the_end::<f32>();
     clips_at_the_end::<f64>();
     clips_at_the_end::<Fixed>();

@@ -1,5 +1,5 @@
-//! The tick in fixed point needs no floating point, in hardware or software, and no 64-bit
-//! division: read from the images of all three cores.
+//! The fixed-point tick uses no floating point, in hardware or software, and no 64-bit division:
+//! checked in the images for all three cores.
 //!
 //! Without a target's library these tests print SKIPPED.
 
@@ -7,7 +7,7 @@ use host_sim::cycles::{Reached, reachable};
 use host_sim::target::{Board, CORTEX_M0, CORTEX_M3, STM32F405};
 use system_tests::{build, skip};
 
-/// Names that stand for floating point in software or a 64-bit division.
+/// Names of functions for software floating point or 64-bit division.
 fn forbidden(name: &str) -> bool {
     let library = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.contains(prefix));
     // __aeabi_f2d and the like, __aeabi_d2iz, __aeabi_i2f, __aeabi_fadd, __aeabi_dcmplt ...
@@ -30,7 +30,7 @@ fn steps(board: Board, function: &str) -> Option<Reached> {
 }
 
 #[test]
-fn no_floating_point_and_no_long_division_is_reachable_from_the_tick() {
+fn no_floating_point_or_long_division_is_reachable_from_the_tick() {
     for board in [STM32F405, CORTEX_M3, CORTEX_M0] {
         for function in ["step_continuous_fixed", "step_fes_fixed", "step_discrete_fixed"] {
             let Some(reached) = steps(board, function) else { return };
@@ -45,8 +45,8 @@ fn no_floating_point_and_no_long_division_is_reachable_from_the_tick() {
 }
 
 #[test]
-fn what_is_forbidden_would_be_found() {
-    // The whole program builds muscles, with software floating point and divisions.
+fn forbidden_functions_are_detected() {
+    // The program as a whole builds muscles, which needs both.
     let Some(reached) = steps(CORTEX_M3, "main") else { return };
     let found = reached.functions.iter().filter(|name| forbidden(name)).count();
     assert!(found >= 5, "{:?}", reached.functions);

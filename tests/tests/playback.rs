@@ -15,7 +15,7 @@ fn data(name: &str) -> PathBuf {
 
 /// A trace of the authors' program, played to the firmware: bits equal to the host's own run.
 #[test]
-fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
+fn a_trace_played_over_the_link_has_the_hosts_bits() {
     let muscle =
         muscle_file::read(&data("muscles/deltoid_posterior.toml")).expect("a muscle").muscle;
     for (vector, mode, class) in [
@@ -38,7 +38,7 @@ fn a_trace_played_over_the_link_has_the_bits_of_the_hosts_run() {
 
 /// The comparison fails for a device with another muscle.
 #[test]
-fn another_muscle_has_other_bits() {
+fn another_muscle_is_detected_by_its_bits() {
     struct Tampered {
         device: InProcess<Memory>,
         answers: Receiver,
@@ -60,7 +60,7 @@ fn another_muscle_has_other_bits() {
     }
     impl Write for Tampered {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            // An upload gets another mass, in a valid frame.
+            // Changes the mass of an upload, in a valid frame.
             let mut receiver = Receiver::new();
             for &byte in bytes {
                 if let Some(Ok(frame)) = receiver.push(byte, self.session)

@@ -24,7 +24,8 @@ const STATIC_FORCE: [(f64, [f64; 3]); 11] = [
     (1.0, [163.384, 165.026, 165.026]),
 ];
 
-/// The force after three seconds of an activation; no units: natural continuous recruitment.
+/// Force after three seconds of constant activation; without units in natural continuous
+/// recruitment.
 fn steady_force(units: Option<usize>, activation: f64, arithmetic: Arithmetic) -> f64 {
     let (muscle, mode) = match units {
         None => (paper_muscle(), Mode::Continuous),
@@ -37,11 +38,11 @@ fn steady_force(units: Option<usize>, activation: f64, arithmetic: Arithmetic) -
 }
 
 #[test]
-fn the_static_curves_of_force_by_activation_are_the_authors() {
+fn static_force_over_activation_agrees_with_the_authors() {
     for (activation, forces) in STATIC_FORCE {
         for (units, force) in [None, Some(3), Some(30)].into_iter().zip(forces) {
-            // The last unit's threshold is 0.8 within rounding, so that the authors' program
-            // recruits it at 0.8 with 6 units and not with 60: the model is evaluated next to it.
+            // The last unit's threshold is 0.8 within rounding: the authors' program recruits it at
+            // 0.8 with 6 units but not with 60. The model is evaluated next to the threshold.
             let beside = match units {
                 Some(3) if activation == 0.8 => 1e-6,
                 Some(_) if activation == 0.8 => -1e-6,
@@ -76,7 +77,7 @@ fn the_paper_muscle_has_the_published_force_and_length() {
 }
 
 #[test]
-fn presets_are_the_published_tables() {
+fn presets_equal_the_published_tables() {
     let fibers: [(&str, FiberType); 8] = [
         ("paper-table-1/slow", paper_table_1::SLOW),
         ("paper-table-1/fast", paper_table_1::FAST),

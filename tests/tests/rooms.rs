@@ -1,4 +1,4 @@
-//! Architecture: who may know whom.
+//! Architecture: allowed dependencies.
 
 #[path = "rooms/imports.rs"]
 mod imports;

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use system_tests::{build, skip};
 
-/// Ends with the test.
+/// Ends the process with the test.
 struct Machine(Child);
 
 impl Drop for Machine {
@@ -21,7 +21,7 @@ impl Drop for Machine {
 }
 
 #[test]
-fn a_board_on_a_serial_port_has_the_bits_of_the_hosts_run() {
+fn a_board_on_a_serial_port_has_the_hosts_bits() {
     let image = match build(STM32F405, STIMULATOR) {
         Err(reason) => return skip(&reason.to_string()),
         Ok(image) => image,

@@ -21,7 +21,7 @@ fn description() -> Description {
 }
 
 #[test]
-fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
+fn all_depths_are_known_a_quarter_is_free_and_the_readme_is_current() {
     let Some(image) = image() else { return };
     let report = stack::report(&image, &description()).expect("a report");
     assert_eq!(report.problems, Vec::<String>::new());
@@ -33,7 +33,7 @@ fn nothing_is_unknown_a_quarter_is_free_and_the_readme_says_so() {
 type Case = (fn(&mut Description), &'static str);
 
 #[test]
-fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
+fn errors_in_the_description_are_reported() {
     let Some(image) = image() else { return };
     let problem = |change: fn(&mut Description)| {
         let mut description = description();
@@ -54,7 +54,7 @@ fn what_the_description_leaves_out_or_has_wrong_is_a_problem() {
         ),
         (|it| it.ram.least_free_percent = 90, "less than 90 %"),
         (|it| it.ram.guard_bytes = 1000, "it may skip"),
-        // A task's handler needs a stack.
+        // A task's handler uses the stack, a fault handler must not.
         (
             |it| {
                 let ends = it.handlers.last().expect("a handler").priority;
@@ -89,7 +89,7 @@ fn layout(image: &Path) -> (Range<u32>, Range<u32>) {
     }
 }
 
-/// With an electrode of a channel.
+/// Upload of a muscle with an electrode.
 fn upload(channel: u8) -> Upload {
     let curve = RecruitmentCurveParams {
         threshold: 4e-3,
@@ -137,7 +137,7 @@ const PAINT: u8 = 0xA5;
 const MOST_RATIO: f64 = 1.5;
 
 #[test]
-fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
+fn the_computed_stack_bounds_the_measured_stack() {
     let Some(image) = image() else { return };
     let description = description();
     let computed = stack::report(&image, &description).expect("a report").stack;
@@ -150,11 +150,11 @@ fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
     // The machine is halted until the stack is painted; the greeting waits.
     let painted = std::thread::scope(|scope| {
         let painter = scope.spawn(|| {
-            let mut debugger = port.attach_at_last();
+            let mut debugger = port.wait_and_attach();
             for part in (0..length).step_by(256) {
                 debugger.write(u64::from(room.start) + part as u64, &[PAINT; 256]);
             }
-            debugger.go_on();
+            debugger.resume();
             debugger
         });
         let machine = Machine::start(&image, arguments);
@@ -185,19 +185,19 @@ fn the_stack_that_is_computed_is_no_less_than_what_is_taken() {
 }
 
 /// Whether a word is an EXC_RETURN value.
-fn is_return_of_exception(word: &[u8]) -> bool {
+fn is_exc_return(word: &[u8]) -> bool {
     matches!(word, [0xE1 | 0xE9 | 0xF1 | 0xF9, 0xFF, 0xFF, 0xFF])
 }
 
-fn returns_of_exceptions(debugger: &mut Debugger, range: &Range<u32>) -> usize {
+fn count_exc_returns(debugger: &mut Debugger, range: &Range<u32>) -> usize {
     let memory = debugger.read(range.start.into(), range.len());
-    memory.chunks_exact(4).filter(|word| is_return_of_exception(word)).count()
+    memory.chunks_exact(4).filter(|word| is_exc_return(word)).count()
 }
 
 /// The tick overflows the stack during pulses: the first word outside RAM faults the core, statics
 /// are unchanged, and the chip restarts in neutral.
 #[test]
-fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
+fn a_stack_overflow_corrupts_nothing_and_ends_in_neutral() {
     let Some(image) = image() else { return };
     let (stack, statics) = layout(&image);
     let port = Port::free();
@@ -211,33 +211,33 @@ fn a_stack_that_overflows_spoils_nothing_and_ends_in_neutral() {
 
     let mut debugger = port.attach();
     assert!(machine.pins().closed > 20);
-    let before = returns_of_exceptions(&mut debugger, &statics);
+    let before = count_exc_returns(&mut debugger, &statics);
     let function = |name| symbol(&image, name).0 & !1;
     let (tick, fault) = (function("SysTick"), function("HardFault"));
     let kept = (debugger.read(tick, 4), debugger.read(fault, 2));
     // push {r0-r7, lr} in a loop; the fault handler loops, too.
     debugger.write(tick, &[0xFF, 0xB5, 0xFD, 0xE7]);
     debugger.write(fault, &[0xFE, 0xE7]);
-    debugger.go_on();
+    debugger.resume();
     let started = Instant::now();
     loop {
         std::thread::sleep(Duration::from_millis(100));
         debugger.stop();
         let bottom = stack.start..stack.start + 0x100;
-        if returns_of_exceptions(&mut debugger, &bottom) > 0 {
+        if count_exc_returns(&mut debugger, &bottom) > 0 {
             break;
         }
         assert!(started.elapsed() < Duration::from_secs(60), "no overflow");
-        debugger.go_on();
+        debugger.resume();
     }
-    let after = returns_of_exceptions(&mut debugger, &statics);
+    let after = count_exc_returns(&mut debugger, &statics);
     assert_eq!(after, before, "the stack was written over the statics");
 
     // Restores the handlers; the stack pointer stays invalid.
     debugger.write(tick, &kept.0);
     debugger.write(fault, &kept.1);
     let closed = machine.pins().closed;
-    debugger.go_on();
+    debugger.resume();
     let mut machine = machine.greeted_again();
     assert_eq!(machine.report().state, State::Latched(Fault::Boot));
     let pins = machine.pins();

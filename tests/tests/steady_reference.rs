@@ -1,4 +1,4 @@
-//! The inverse under FES: its stimulation, held by the reference for seconds, gives the wanted
+//! The inverse model of FES: its stimulation, applied to the reference, gives the requested steady
 //! force.
 
 use host_sim::engine::{self, Arithmetic};
@@ -64,7 +64,7 @@ fn errors<S: Scalar>(references: &[(f64, f64, f64, f64)]) -> [f64; 2] {
 }
 
 #[test]
-fn the_reference_holds_the_force_that_was_asked_for() {
+fn the_reference_settles_at_the_requested_force() {
     let muscle = paper_muscle();
     let mut references = Vec::new();
     for path in PATHS {

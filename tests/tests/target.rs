@@ -1,4 +1,4 @@
-//! On the target: the emulated STM32F405 leaves the same bits as the host, tick by tick.
+//! The emulated target computes the same bits as the host in every tick.
 //!
 //! Without the thumb target or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set, as in
 //! CI, they fail.
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use system_tests::{build, skip};
 use vm_nostd::Fixed;
 
-/// The scenario lasts 12 s on the target; a busy machine may take longer.
+/// Timeout: the scenario takes 12 s in QEMU, longer on a busy host.
 const PATIENCE: Duration = Duration::from_secs(240);
 
 /// Runs a program on the emulated chip and returns what it wrote.
@@ -72,7 +72,7 @@ fn compare<S: Arithmetic>(on_target: &[u8]) {
     }
 }
 
-/// Both arithmetics, both modes, on a core.
+/// Compares both arithmetics and modes on a core.
 fn golden_on(board: Board) {
     match build(board, "golden").and_then(|program| emulate(board, &program)) {
         Ok(bytes) => {
@@ -85,22 +85,22 @@ fn golden_on(board: Board) {
 }
 
 #[test]
-fn a_cortex_m4f_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+fn a_cortex_m4f_has_the_hosts_bits_in_both_arithmetics() {
     golden_on(STM32F405);
 }
 
 #[test]
-fn a_cortex_m3_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+fn a_cortex_m3_has_the_hosts_bits_in_both_arithmetics() {
     golden_on(CORTEX_M3);
 }
 
 #[test]
-fn a_cortex_m0_leaves_the_same_bits_as_the_host_in_both_arithmetics() {
+fn a_cortex_m0_has_the_hosts_bits_in_both_arithmetics() {
     golden_on(CORTEX_M0);
 }
 
 #[test]
-fn the_scenario_visits_what_a_muscle_can_meet() {
+fn the_scenario_covers_all_flags_and_the_range_of_force() {
     let size = 4 * frame_words::<f32>();
     let on_host = on_host::<f32>();
     let word = |frame: &[u8], index: usize| {

@@ -37,7 +37,7 @@ fn after_ten_minutes<R: Recruitment<Fixed, 2, Units = ()>>(input: ReferenceInput
 }
 
 #[test]
-fn ten_minutes_of_a_constant_input_end_at_the_references_steady_state() {
+fn after_ten_minutes_of_constant_input_the_force_is_the_references() {
     let f0 = paper_muscle().f0();
     for activation in [0.05, 0.35, 0.8, 1.0] {
         let input = ReferenceInput { activation, path_length: 0.163, stimulation_frequency: 23.0 };

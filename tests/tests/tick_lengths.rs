@@ -1,5 +1,5 @@
 //! The stimulator built for the shortest and the longest tick, in QEMU: the host's bits, and no
-//! tick late.
+//! late tick.
 
 use host_sim::engine::Class;
 use host_sim::hil::{self, Client, Emulated};

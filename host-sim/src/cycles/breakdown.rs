@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 pub struct Part {
     /// Name of the function, file or class.
     pub name: String,
+    /// Its cost.
     pub cost: Cost,
 }
 
