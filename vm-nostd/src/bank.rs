@@ -1,4 +1,4 @@
-//! A bank of muscles, continuous or FES, that one call steps.
+//! A bank of muscles, continuous or FES, stepped together.
 
 use crate::io::{Input, Output};
 use crate::muscle::{ContinuousMuscle, FesMuscle};
@@ -10,17 +10,17 @@ use heapless::Vec;
 
 /// A muscle with its state.
 #[derive(Clone, Copy, Debug)]
-// The variants differ by a few words of a kilobyte.
+// The variants differ by a few words out of about a kilobyte.
 #[allow(clippy::large_enum_variant)]
 pub enum BankedMuscle<S: Scalar, const N: usize> {
-    /// Under natural continuous recruitment.
+    /// Natural continuous recruitment.
     Continuous(ContinuousMuscle<S, N>, State<S, NaturalContinuous, N>),
-    /// Under intramuscular FES.
+    /// Intramuscular FES.
     Fes(FesMuscle<S, N>, State<S, IntramuscularFes, N>),
 }
 
 impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
-    /// Checksum of its coefficients, as [`Muscle::checksum`](crate::Muscle::checksum).
+    /// Checksum of the coefficients, see [`Muscle::checksum`](crate::Muscle::checksum).
     pub fn coefficients_checksum(&self) -> u32 {
         match self {
             Self::Continuous(muscle, _) => muscle.checksum(),
@@ -28,7 +28,7 @@ impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
         }
     }
 
-    /// Checksum of its state, as [`State::checksum`].
+    /// Checksum of the state, see [`State::checksum`].
     pub fn state_checksum(&self) -> u32 {
         match self {
             Self::Continuous(_, state) => state.checksum(),
@@ -36,7 +36,7 @@ impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
         }
     }
 
-    /// Steps it by one tick, as [`Muscle::step`](crate::Muscle::step) does.
+    /// Steps the muscle by one tick, see [`Muscle::step`](crate::Muscle::step).
     pub fn step(&mut self, input: Input<S>) -> Output<S> {
         match self {
             Self::Continuous(muscle, state) => muscle.step(state, input),
@@ -45,16 +45,16 @@ impl<S: Scalar, const N: usize> BankedMuscle<S, N> {
     }
 }
 
-/// The bank was full.
+/// The bank is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BankFull {
-    /// Its capacity.
+    /// Capacity, muscles.
     pub capacity: usize,
 }
 
 impl fmt::Display for BankFull {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the bank holds {} muscles, and has as many", self.capacity)
+        write!(f, "the bank is full: it holds {} muscles", self.capacity)
     }
 }
 
@@ -80,7 +80,7 @@ impl core::error::Error for BankFull {}
 /// let mut bank = Bank::<Fixed, 2, 8>::new();
 /// bank.add(BankedMuscle::Fes(muscle, state))?;
 ///
-/// // Every tick: an input for each place; those of empty places are ignored.
+/// // Every tick: one input per place; those of empty places are ignored.
 /// let mut inputs = [rest; 8];
 /// inputs[0] = Input::<Fixed>::from_integers(500, 160_000, 250);
 /// let outputs = bank.step(&inputs);
@@ -98,7 +98,7 @@ impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
         Self { muscles: Vec::new() }
     }
 
-    /// Adds a muscle and returns its place, the lowest free one; an error if the bank is full.
+    /// Adds a muscle at the lowest free place and returns the place; an error if the bank is full.
     pub fn add(&mut self, muscle: BankedMuscle<S, N>) -> Result<usize, BankFull> {
         let place = self.muscles.len();
         self.muscles.push(muscle).map_err(|_| BankFull { capacity: CAPACITY })?;
@@ -110,10 +110,7 @@ impl<S: Scalar, const N: usize, const CAPACITY: usize> Bank<S, N, CAPACITY> {
         &self.muscles
     }
 
-    /// Steps all muscles by one tick; the outputs are in the order of places.
-    ///
-    /// Each muscle takes the input of its place. It cannot fail, and takes the time of its muscles'
-    /// steps.
+    /// Steps all muscles by one tick. Inputs and outputs are in the order of places. Cannot fail.
     pub fn step(&mut self, inputs: &[Input<S>; CAPACITY]) -> Vec<Output<S>, CAPACITY> {
         self.muscles.iter_mut().zip(inputs).map(|(muscle, input)| muscle.step(*input)).collect()
     }

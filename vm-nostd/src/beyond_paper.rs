@@ -1,4 +1,4 @@
-//! What the paper does not have.
+//! Extensions beyond the paper.
 
 pub(crate) mod fatigue;
 pub(crate) mod recruitment_curve;

@@ -1,14 +1,14 @@
-//! A checksum over coefficients and state, with which firmware detects a flipped bit in RAM.
+//! A checksum of coefficients and state, with which firmware detects flipped bits in RAM.
 //!
-//! For each word, h <- (rotate(h, 5) xor word) k with k odd. This is a bijection of h for a given
-//! word and of the word for a given h: one changed word is always detected, several are missed with
-//! a probability of about 2^-32.
+//! For each word, h <- (rotate(h, 5) xor word) k with odd k. This is a bijection of h for a given
+//! word, and of the word for a given h: one changed word is always detected, several are missed
+//! with a probability of about 2^-32.
 
 /// A checksum of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(u32);
 
-/// Odd, with well-mixed bits: 2^32 over the golden ratio.
+/// The factor k: 2^32 over the golden ratio, odd and with well-mixed bits.
 const FACTOR: u32 = 0x9E37_79B1;
 
 impl Checksum {
@@ -108,7 +108,7 @@ mod tests {
     use crate::tick::time_step::TimeStep;
 
     #[test]
-    fn a_word_that_differs_is_seen_wherever_it_is() {
+    fn every_flipped_bit_is_detected() {
         let sum = |words: &[u32]| {
             let mut checksum = Checksum::EMPTY;
             words.iter().for_each(|&word| checksum.add(word));
@@ -126,7 +126,7 @@ mod tests {
     }
 
     /// A small change of any parameter changes the checksum.
-    fn parameters_are_in_the_sum<S: Scalar>() {
+    fn parameters_change_the_checksum<S: Scalar>() {
         let muscle = PAPER_MUSCLE;
         let step = TimeStep::MILLISECOND;
         let sums = |params: &MuscleParams<2>, step| {
@@ -160,7 +160,7 @@ mod tests {
         check("tendon_length", &|m| m.tendon_length *= 1.01, all);
         check("max_path_length", &|m| m.max_path_length *= 1.01, all);
         check("class", &|m| m.class = crate::Class::Fine, all);
-        // FES has no thresholds, and only FES has a frequency in pps.
+        // FES has no recruitment thresholds, and only FES uses frequencies in pps.
         check("recruitment_saturation", &|m| m.recruitment_saturation = 0.7, &[0, 2, 3]);
         check("tendon.stiffness", &|m| m.elements.tendon.stiffness *= 1.01, all);
         check("tendon.toe", &|m| m.elements.tendon.toe *= 1.01, all);
@@ -198,9 +198,9 @@ mod tests {
     }
 
     #[test]
-    fn every_parameter_is_in_the_sum_of_a_muscle() {
-        parameters_are_in_the_sum::<f32>();
-        parameters_are_in_the_sum::<Fixed>();
-        parameters_are_in_the_sum::<f64>();
+    fn every_parameter_changes_the_checksum() {
+        parameters_change_the_checksum::<f32>();
+        parameters_change_the_checksum::<Fixed>();
+        parameters_change_the_checksum::<f64>();
     }
 }

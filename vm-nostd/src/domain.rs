@@ -1,4 +1,4 @@
-//! Ranges of inputs and state.
+//! Validity ranges of inputs and state.
 
 use crate::checksum::summed;
 use crate::io::Input;
@@ -9,34 +9,34 @@ use crate::status::Status;
 use crate::tick::admission::admit_one;
 use crate::tick::range::Range;
 
-/// The stated domain of a muscle's inputs and state.
+/// Validity ranges of a muscle's inputs and ranges of its state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Domain<S: Scalar> {
     pub(crate) activation: Range<S>,
     pub(crate) stimulation_frequency: Range<S::Quantity>,
     pub(crate) path_length: Range<S::PathLength>,
-    /// Where the equations of the filaments hold, L_ce0.
+    /// Validity range of the filaments' equations, L_ce0.
     pub(crate) filaments: Range<S>,
-    /// The slowest V_max of the types, or the greatest speed there is, L_ce0/s: FV of all types
-    /// holds above.
+    /// V_max of the slowest type, limited to the state range, L_ce0/s: above it FV of all types is
+    /// valid.
     pub(crate) shortening_velocity: S,
-    /// What the state can hold, L_ce0: from the shortest at which the equations hold to what a
-    /// muscle at rest on the longest path is stretched to, and a little more.
+    /// State range of the length, L_ce0: from the lower end of the validity range to the length of
+    /// a muscle at rest on the longest path, plus a margin.
     pub(crate) fascicle_length: Range<S>,
-    /// L_ce0/s.
+    /// State range of the velocity, L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
-    /// Lengths that the state can hold and where the equations of the filaments hold, L_ce0.
+    /// Intersection of `fascicle_length` and `filaments`, L_ce0.
     usual: Range<S>,
 }
 
-/// Where the fascicles are at the middle of a tick.
+/// Mid-tick fascicle length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Midway<S> {
-    /// As near as the state can hold, L_ce0.
+    /// Clamped to the state range, L_ce0.
     pub(crate) length: S,
-    /// The nearest to that where the equations of the filaments hold, L_ce0.
+    /// Clamped to the validity range of the filaments' equations, L_ce0.
     pub(crate) inside: S,
-    /// Neither had to be changed.
+    /// Whether neither was clamped.
     pub(crate) usual: bool,
 }
 
@@ -62,8 +62,7 @@ impl<S: Scalar> Domain<S> {
         }
     }
 
-    /// Where the fascicles are taken to be, of whose middle of a tick a length (L_ce0) was
-    /// foreseen.
+    /// Clamps the predicted mid-tick length (L_ce0) to the state range and the validity range.
     pub(crate) fn midway(&self, length: S) -> Midway<S> {
         if self.usual.contains(length) {
             return Midway { length, inside: length, usual: true };
@@ -73,14 +72,14 @@ impl<S: Scalar> Domain<S> {
         Midway { length, inside, usual: false }
     }
 
-    /// Whether nothing has to be said of a length (L_ce0) and a velocity (L_ce0/s) at a tick's end.
+    /// True if a length (L_ce0) and a velocity (L_ce0/s) at the end of a tick raise no flag.
     pub(crate) fn is_usual(&self, length: S, velocity: S) -> bool {
         self.usual.contains(length)
             && velocity > self.shortening_velocity
             && velocity < self.fascicle_velocity.most
     }
 
-    /// The input as the model takes it, and what had to be changed.
+    /// Clamps the input to the validity ranges and returns the flags.
     pub(crate) fn admit(&self, input: Input<S>, path_before: S::PathLength) -> (Input<S>, Status) {
         let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO, S::is_finite);
         let (stimulation_frequency, f) = admit_one(

@@ -128,7 +128,7 @@ pub struct MuscleParams<const N: usize> {
     /// Activation U_r at which all fibres are recruited in the natural modes; 0.01 to 1.
     #[doc(alias = "Ur")]
     pub recruitment_saturation: f64,
-    /// How accurate it is computed.
+    /// Accuracy class.
     #[cfg_attr(feature = "serde", serde(default))]
     pub class: Class,
     /// Coefficients shared by the fibre types.
@@ -147,7 +147,7 @@ const LEAST_PATH_RANGE: f64 = 0.1;
 pub(crate) const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 /// Margin for ringing of the longest fascicles, beyond those at rest on the longest path, L_ce0.
 const RINGING_ROOM: f64 = 0.25;
-/// Bisections that bring a length to the last bits of `f64`.
+/// Number of bisections that resolve a length to the last bits of `f64`.
 const HALVINGS: usize = 60;
 /// Names of derived quantities that are refused.
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
@@ -299,16 +299,16 @@ impl<const N: usize> MuscleParams<N> {
         within(PARALLEL, parallel.force(stretch), 0.0, largest)?;
         let toes = (stretch - parallel.slack_length) / parallel.toe;
         within(PARALLEL_TOE, toes, f64::MIN, 2.0 * largest)?;
-        // The mechanics extrapolate it linearly by half a tick, at most at the greatest speed. No
-        // sum of it may saturate up to there. It is added to a few F0 at most: the sum stays
-        // negative and is clamped to 0.
+        // The mechanics extrapolate it linearly by half a tick at the greatest speed. No sum with
+        // it may saturate up to there. It is added to a few F0 at most: the sum stays negative and
+        // is clamped to 0.
         let compression = self.elements.compression.force(shortest);
         let steepness = self.elements.compression.steepness;
         let extrapolated = 1.0 - 0.5 * steepness * MAXIMUM_SPEED * step.seconds();
         within(COMPRESSION, compression, -2.0 * largest / extrapolated, 0.0)?;
         self.each_fiber(|t| {
             let frequency = MAXIMUM_STIMULATION_FREQUENCY / t.half_force_frequency;
-            // Added to nothing, it may be as large as two coefficients together.
+            // It is not added to anything, so it may be as large as the sum of two coefficients.
             within("half_force_frequency: 500 pps, f0.5", frequency, 0.0, 2.0 * largest)?;
             t.activation.validate_magnitudes(shortest, largest)?;
             t.force_velocity.validate_magnitudes(shortest, longest, largest)

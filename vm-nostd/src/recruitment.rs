@@ -1,4 +1,4 @@
-//! How activation becomes recruitment; one file per mode.
+//! Recruitment modes: activation to firing and force of the fibre types; one file per mode.
 
 mod acting_length;
 mod continuous;

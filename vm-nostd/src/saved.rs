@@ -1,4 +1,4 @@
-//! A saved state, read word by word and checked.
+//! Reads and validates a saved state word by word.
 
 use crate::scalar::Scalar;
 use crate::tick::range::Range;
@@ -8,22 +8,22 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RestoreError {
-    /// There were not as many words as a saved state has.
+    /// The number of words is wrong.
     Length {
-        /// How many it has.
+        /// Expected number of words.
         expected: usize,
     },
-    /// They were saved by another muscle, or for another mode, time step or arithmetic; or one
-    /// whose coefficients have lost a bit since.
+    /// The state was saved by another muscle or for another mode, time step or arithmetic; or a bit
+    /// of the muscle's coefficients has flipped since.
     OtherMuscle {
-        /// The fingerprint they begin with.
+        /// Fingerprint of the saved state.
         saved: u64,
-        /// That of the muscle they were given to.
+        /// Fingerprint of this muscle.
         expected: u32,
     },
-    /// A word does not hold a value that the muscle can be in.
+    /// A value is out of range.
     Value {
-        /// Which word, counted from 0.
+        /// Index of its first word, from 0.
         word: usize,
     },
 }
@@ -46,21 +46,21 @@ impl fmt::Display for RestoreError {
 
 impl core::error::Error for RestoreError {}
 
-/// What a value of a saved state may be outside of its range by.
+/// Rounding tolerance when range-checking a restored value.
 pub(crate) const ROUNDING: f64 = 1e-5;
 
-/// Words that are being read.
+/// Reader of the words of a saved state.
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct Saved<I> {
     words: I,
-    /// How many were read.
+    /// Number of words read.
     count: usize,
     expected: usize,
 }
 
 impl<I: Iterator> Saved<I> {
-    /// Words of which there should be so many, the first of them a `fingerprint`.
+    /// A reader of `expected` words; checks the first one, the fingerprint.
     pub(crate) fn new(words: I, expected: usize, fingerprint: u32) -> Result<Self, RestoreError>
     where
         I: Iterator<Item: Eq + From<u32> + Into<u64> + Copy>,
@@ -74,7 +74,7 @@ impl<I: Iterator> Saved<I> {
         Ok(saved)
     }
 
-    /// Refuses words that are left.
+    /// Refuses excess words.
     pub(crate) fn finished(&mut self) -> Result<(), RestoreError> {
         if self.words.next().is_some() { Err(self.length()) } else { Ok(()) }
     }
@@ -83,7 +83,7 @@ impl<I: Iterator> Saved<I> {
         RestoreError::Length { expected: self.expected }
     }
 
-    /// A value of so many words, refused if it is not one the muscle can have.
+    /// Refuses a missing value of `words` words, and one that is not valid.
     fn checked<T>(
         &mut self,
         value: Option<T>,

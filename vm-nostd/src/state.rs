@@ -1,28 +1,28 @@
-//! Everything of a muscle that changes from tick to tick.
+//! State of a muscle.
 
 use crate::checksum::{Checksum, Summed};
 use crate::equations::yielding::Speed;
 use crate::recruitment::{NaturalContinuous, Recruitment, RecruitmentState};
 use crate::scalar::Scalar;
 
-/// The state of a muscle of `N` fibre types recruited as `R` says, plain data: copy it to save it.
+/// State of a muscle of `N` fibre types with recruitment `R`: plain data that can be copied.
 ///
-/// [`words`](Self::words) gives its bits, for comparison. For storage
-/// [`Muscle::save`](crate::Muscle::save) puts before them whose they are, and
-/// [`Muscle::restore`](crate::Muscle::restore) takes them back after checking them.
+/// [`words`](Self::words) returns the bits, for comparison. For storage
+/// [`Muscle::save`](crate::Muscle::save) adds a fingerprint of the muscle, and
+/// [`Muscle::restore`](crate::Muscle::restore) validates fingerprint and values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
-    /// (L_se - LrT) L_se0/L_ce0: how far the tendon is extended beyond slack, in L_ce0.
+    /// Tendon extension beyond slack, (L_se - LrT) L_se0/L_ce0, in L_ce0.
     pub(crate) tendon_extension: S,
     /// V, L_ce0/s.
     pub(crate) fascicle_velocity: S,
-    /// L_mt at the end of the last tick.
+    /// L_mt at the last tick boundary.
     pub(crate) path_length: S::PathLength,
-    /// What multiplied FV of each type at the middle of the last tick, 0..1.
+    /// Factor of FV of each type at the last mid-tick, 0..1.
     pub(crate) gains: [S; N],
-    /// What multiplied F_pe2 there, 0..1.
+    /// Factor of F_pe2 at the last mid-tick, 0..1.
     pub(crate) compressed: S,
-    /// Speed during the last tick: what Y has still to be advanced by.
+    /// Speed during the last tick, with which Y is advanced in the next one.
     pub(crate) speed: Speed<S>,
     /// Y of each type at the start of the last tick, 0..1.
     pub(crate) yieldings: [S::LagState; N],
@@ -30,9 +30,9 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 }
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
-    /// How many words [`words`](Self::words) gives.
+    /// Number of [`words`](Self::words).
     pub const WORDS: usize = 6 + N * (1 + S::SLOW_WORDS) + R::State::WORDS;
-    /// How many words the state is saved in: whose it is, and all of it.
+    /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
     /// Fascicle velocity V, L_ce0/s, positive when lengthening.
@@ -40,21 +40,21 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
         self.fascicle_velocity
     }
 
-    /// Checksum of all of its words.
+    /// Checksum of all words.
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
         self.words().for_each(|word| word.sum(&mut checksum));
         checksum.value()
     }
 
-    /// The bits of the state, [`WORDS`](Self::WORDS) of them, always in the same order: tendon
-    /// extension (L_ce0), fascicle velocity (L_ce0/s), path length; what multiplied F_pe2 in the
-    /// middle of the last tick, mean and variance of the speed in it; what multiplied FV of each
-    /// type in its middle; Y of each type where it started; U_eff, where each type is one unit; and
-    /// of each unit f_int, f_eff, S, the Af foreseen for the next tick, and its effective length
-    /// where it has one.
+    /// The [`WORDS`](Self::WORDS) words of the state in fixed order: tendon extension (L_ce0),
+    /// fascicle velocity (L_ce0/s), path length; factor of F_pe2 at the last mid-tick, mean and
+    /// variance of the speed in the last tick; factor of FV of each type at the last mid-tick; Y of
+    /// each type at the start of the last tick; U_eff in modes with one unit per type; and for each
+    /// unit f_int, f_eff, S, the Af predicted for the next tick, and its effective length in the
+    /// mode that has one.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        let of_muscle = [
+        let mechanics = [
             self.tendon_extension.to_bits(),
             self.fascicle_velocity.to_bits(),
             S::path_bits(self.path_length),
@@ -62,7 +62,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
             self.speed.mean.to_bits(),
             self.speed.variance.to_bits(),
         ];
-        of_muscle
+        mechanics
             .into_iter()
             .chain(self.gains.into_iter().map(S::to_bits))
             .chain(self.yieldings.into_iter().flat_map(S::lag_state_words))

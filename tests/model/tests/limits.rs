@@ -322,22 +322,22 @@ fn invalid_motor_units_are_refused_with_field_value_and_limit() {
     let refused = |sizes| MotorUnits::<8>::new(&MUSCLE, sizes).expect_err("units to refuse");
     let three = UnitSizes::Default(3);
     for (sizes, field, fiber, value) in [
-        (UnitSizes::Equal(0), "units: their number", Some(1), 0.0),
-        (UnitSizes::Listed(&[]), "units: their number", Some(1), 0.0),
-        (UnitSizes::Default(9), "units: their number", Some(1), 9.0),
-        (UnitSizes::Default(6), "units: the number of all types together", None, 9.0),
+        (UnitSizes::Equal(0), "units: count", Some(1), 0.0),
+        (UnitSizes::Listed(&[]), "units: count", Some(1), 0.0),
+        (UnitSizes::Default(9), "units: count", Some(1), 9.0),
+        (UnitSizes::Default(6), "units: total count", None, 9.0),
         (UnitSizes::Geometric(2, 1.5), "units: geometric growth", Some(1), 1.5),
         (UnitSizes::Geometric(2, -0.6), "units: geometric growth", Some(1), -0.6),
-        (UnitSizes::Listed(&[1.0, 0.0]), "units: a listed size", Some(1), 0.0),
+        (UnitSizes::Listed(&[1.0, 0.0]), "units: listed size", Some(1), 0.0),
         (UnitSizes::Listed(&[1e12, 1e-12]), SMALLEST, Some(1), 1e-24),
-        (UnitSizes::Listed(&[1.0, -1.0]), "units: a listed size", Some(1), -1.0),
+        (UnitSizes::Listed(&[1.0, -1.0]), "units: listed size", Some(1), -1.0),
     ] {
         let error = refused([three, sizes]);
         assert_eq!((error.field, error.fiber, error.value), (field, fiber, value), "{sizes:?}");
         assert!(matches!(error.limit, Limit::Within { .. }));
     }
     let error = refused([three, UnitSizes::Listed(&[f64::NAN])]);
-    assert!(error.value.is_nan() && error.field == "units: a listed size");
+    assert!(error.value.is_nan() && error.field == "units: listed size");
     let units = MotorUnits::<8>::new(&MUSCLE, [three, UnitSizes::Listed(&[1.0, 2.0])]);
     let units = units.expect("five units");
     assert_eq!(units.count(), 5);
@@ -352,8 +352,8 @@ fn invalid_motor_units_are_refused_with_field_value_and_limit() {
     assert!((error.value - 0.6).abs() < 1e-9, "{error}");
 }
 
-const SMALLEST: &str = "units: share of the smallest in its type";
-const SHARE: &str = "units: the fraction of the type they were made for";
+const SMALLEST: &str = "units: smallest share of a type";
+const SHARE: &str = "units: fraction of the type";
 
 #[test]
 fn rules_for_unit_sizes_equal_the_listed_sizes() {

@@ -1,4 +1,4 @@
-//! Fatigue and recovery of a stimulated muscle: fitness, a factor on its force, 1 when rested.
+//! Fatigue and recovery: fitness is a factor on force, 1 in a rested muscle.
 //!
 //! d fit/dt = (fit_min - fit) a λ/T_fat + (1 - fit)(1 - a λ)/T_rec,
 //! λ = 1 - β + β (f/100 pps)², and 1 from 100 pps on,
@@ -6,7 +6,7 @@
 //!
 //! Source: Riener, Quintern & Schmidt, J. Biomech. 29 (1996) 1157-1167; without dependence on
 //! frequency, Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is not part of
-//! Virtual Muscle: without it a muscle keeps every bit.
+//! Virtual Muscle and does not change the bits of a muscle without it.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::error::{ParameterError, within};
@@ -18,7 +18,7 @@ use crate::tick::admission::admit_one;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
-/// From this frequency on, λ is 1; pps.
+/// Frequency from which λ is 1, pps.
 const SATURATING_FREQUENCY: f64 = 100.0;
 
 /// Parameters of fatigue and recovery.
@@ -63,7 +63,8 @@ impl FatigueParams {
 pub struct FatigueState<S: Scalar> {
     /// Fitness in whole steps.
     steps: S,
-    /// The remainder: near 1, the ULP of `f32` exceeds the change of a tick.
+    /// The remainder. A separate number, because near 1 the change of a tick may be below the ULP
+    /// of `f32`.
     rest: S::LagState,
 }
 
@@ -84,7 +85,7 @@ impl<S: Scalar> FatigueState<S> {
     }
 }
 
-/// Step of fitness, a divisor of 1.
+/// Step of fitness; 1 is a multiple of it.
 const STEP: f64 = 1.0 / 16384.0;
 
 /// Coefficients of fatigue and recovery for a time step.
@@ -112,7 +113,7 @@ pub struct Fatigue<S: Scalar> {
     per_saturating_frequency: S::Factor,
     least_fitness: S,
     frequency_dependence: S,
-    /// Shares of the distance to the least fitness and to 1 per tick.
+    /// Share per tick of the distance to the least fitness, and of that to 1.
     tire: S::Share,
     recover: S::Share,
     step: S,
@@ -162,8 +163,8 @@ impl<S: Scalar> Fatigue<S> {
         core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
     }
 
-    /// Restores a state saved by [`Fatigue::save`]; an error if it is of other parameters or
-    /// another time step, or out of range.
+    /// Restores a state saved by [`Fatigue::save`]; an error if it was saved with other parameters
+    /// or another time step, or is out of range.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
@@ -172,7 +173,7 @@ impl<S: Scalar> Fatigue<S> {
         let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
         let share = |value| self.activation.contains(value);
         let steps = saved.number(share)?;
-        // A tick may change fitness by more than a step.
+        // A tick may change fitness by more than a step, so the remainder may exceed it.
         let rest = saved.lag_state(&Range { least: -S::ONE, most: S::ONE })?;
         saved.finished()?;
         Ok(FatigueState { steps, rest })
@@ -218,7 +219,7 @@ impl<S: Scalar> Fatigue<S> {
 }
 
 impl<S: Scalar> Output<S> {
-    /// The output with the force that a fitness (0..1) leaves of it.
+    /// The output with force multiplied by a fitness (0..1).
     #[must_use]
     pub fn fatigued(self, fitness: S) -> Self {
         let relative_force = fitness * self.relative_force;

@@ -19,7 +19,7 @@ use crate::tick::admission::{Admission, admit_one};
 use crate::tick::range::Range;
 
 bitflags::bitflags! {
-    /// What was wrong with a pulse, or with the pulse that was asked for.
+    /// Flags of a pulse or of the inverse.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub struct PulseStatus: u16 {
         /// Amplitude was outside 0..500 mA, or beyond 100 times saturation, and was clipped.
@@ -34,7 +34,8 @@ bitflags::bitflags! {
         const ACTIVATION_CLIPPED = 1 << 4;
         /// Activation was not a number (taken as 0) or infinite (clipped).
         const ACTIVATION_NOT_FINITE = 1 << 5;
-        /// No amplitude or width within these limits recruits so much: the answer is the greatest.
+        /// No amplitude or width within these limits gives the requested activation: the result is
+        /// the greatest one.
         const UNREACHABLE = 1 << 6;
     }
 }
@@ -42,26 +43,26 @@ bitflags::bitflags! {
 /// Greatest amplitude, mA, and width, µs.
 const GREATEST_AMPLITUDE: f64 = 500.0;
 const GREATEST_WIDTH: f64 = 5000.0;
-/// Greatest amplitude, in saturations: any pulse that is worth its name recruits all with less.
+/// Greatest amplitude, in saturations. Pulses of usual width recruit all fibres with less.
 const GREATEST_STRENGTH: f64 = 100.0;
 
-/// How a muscle answers to the pulses of an electrode.
+/// Parameters of the recruitment curve of an electrode and a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RecruitmentCurveParams {
     /// Amplitude of a very long pulse that recruits the first fibres (their rheobase), A; 1e-5 to
     /// 0.2.
     pub threshold: f64,
-    /// Amplitude of a very long pulse that recruits all, A; 1.05 thresholds to 0.2.
+    /// Amplitude of a very long pulse that recruits all fibres, A; 1.05 thresholds to 0.2.
     pub saturation: f64,
-    /// Width at which twice these amplitudes are needed, s; 5e-5 to 0.001.
+    /// Pulse width at which twice these amplitudes are needed, s; 5e-5 to 0.001.
     pub chronaxie: f64,
-    /// Slope m in the middle, as a multiple of that of a straight line; 1 to 10.
+    /// Slope m in the middle, relative to a straight line; 1 to 10.
     pub slope: f64,
 }
 
 impl RecruitmentCurveParams {
-    /// Whether a curve can be built; the error names the field, its value and the limit it broke.
+    /// Validates the parameters; the error has field, value and limit.
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("threshold", self.threshold, 1e-5, 0.2)?;
         within("saturation", self.saturation, 1.05 * self.threshold, 0.2)?;
@@ -75,13 +76,13 @@ impl RecruitmentCurveParams {
 pub struct Pulse<S: Scalar> {
     /// I, mA; 0 to 500, and to 100 times saturation.
     pub amplitude: S::Quantity,
-    /// w, of the phase that stimulates, µs; 0 to 5,000.
+    /// w of the stimulating phase, µs; 0 to 5,000.
     pub width: S::Quantity,
 }
 
-/// A recruitment curve, ready for use in a tick: it cannot fail there, and no loop depends on data.
+/// Coefficients of a recruitment curve. Its methods cannot fail and have no data-dependent loops.
 ///
-/// Activation never falls where amplitude or width grow.
+/// Activation is monotonic in amplitude and width.
 ///
 /// ```
 /// use vm_nostd::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
@@ -91,7 +92,7 @@ pub struct Pulse<S: Scalar> {
 ///     chronaxie: 200e-6,
 ///     slope: 2.0,
 /// })?;
-/// // Twice the mean of threshold and saturation, for the length of the chronaxie.
+/// // Twice the mean of threshold and saturation, with the width of the chronaxie.
 /// let (activation, status) = curve.activation(Pulse { amplitude: 16.0, width: 200.0 });
 /// assert!((activation - 0.5).abs() < 1e-6);
 /// assert!(status.is_empty());
@@ -127,7 +128,7 @@ summed!([S: Scalar] RecruitmentCurve<S> {
 });
 
 impl<S: Scalar> RecruitmentCurve<S> {
-    /// Builds a curve, or refuses with the name of the field, its value and the limit it broke.
+    /// Builds a curve; the error has field, value and limit.
     pub fn build(params: &RecruitmentCurveParams) -> Result<Self, ParameterError> {
         params.validate()?;
         let (saturation, chronaxie) = (params.saturation * 1e3, params.chronaxie * 1e6);
@@ -148,14 +149,14 @@ impl<S: Scalar> RecruitmentCurve<S> {
         })
     }
 
-    /// Checksum of all of its coefficients, as [`Muscle::checksum`](crate::Muscle::checksum).
+    /// Checksum of the coefficients, see [`Muscle::checksum`](crate::Muscle::checksum).
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
         self.sum(&mut checksum);
         checksum.value()
     }
 
-    /// The activation U (0..1) that a pulse recruits, and what had to be clipped.
+    /// Activation U (0..1) of a pulse, and flags.
     pub fn activation(&self, pulse: Pulse<S>) -> (S, PulseStatus) {
         let (amplitude, a) = self.admit_amplitude(pulse.amplitude);
         let (width, w) = self.admit_width(pulse.width);
@@ -164,15 +165,15 @@ impl<S: Scalar> RecruitmentCurve<S> {
         (self.rise(self.activations.clip(excess).0), a | w)
     }
 
-    /// The amplitude (mA) with which a pulse of some width recruits an activation; for 0, the
-    /// greatest that recruits nothing. To rounding: at the very ends, U may come back a little
-    /// above 0 or below 1.
+    /// Amplitude (mA) at which a pulse of a given width has an activation; for activation 0, the
+    /// greatest amplitude that recruits nothing. Subject to rounding: the activation of the result
+    /// may be slightly above 0 or below 1.
     pub fn amplitude_for(&self, activation: S, width: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (width, w) = self.admit_width(width);
         let (strength, u) = self.strength_for(activation);
         let share = self.share(width);
         let most = self.amplitudes.most;
-        // A pulse without width has no share; what it would take is beyond all amplitudes.
+        // A pulse of zero width needs an infinite amplitude.
         let wanted = strength.ratio(share.max(S::LEAST));
         let reachable = share > S::ZERO && wanted <= S::of_quantity(most, &self.per_saturation);
         if reachable {
@@ -182,13 +183,13 @@ impl<S: Scalar> RecruitmentCurve<S> {
         }
     }
 
-    /// The width (µs) with which a pulse of some amplitude recruits an activation; for 0, the
-    /// greatest that recruits nothing. To rounding, as for the amplitude.
+    /// Width (µs) at which a pulse of a given amplitude has an activation; for activation 0, the
+    /// greatest width that recruits nothing. Subject to rounding, as the amplitude.
     pub fn width_for(&self, activation: S, amplitude: S::Quantity) -> (S::Quantity, PulseStatus) {
         let (amplitude, a) = self.admit_amplitude(amplitude);
         let (strength, u) = self.strength_for(activation);
         let available = S::of_quantity(amplitude, &self.per_saturation);
-        // I_e/I = w/(w + c), and so w/c = I_e/(I - I_e).
+        // I_e/I = w/(w + c), hence w/c = I_e/(I - I_e).
         let wanted = strength.ratio((available - strength).max(S::LEAST));
         let most = self.widths.most;
         let reachable = available > strength && wanted <= S::of_quantity(most, &self.per_chronaxie);
@@ -212,7 +213,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
         (width, flags(w, PulseStatus::WIDTH_CLIPPED, PulseStatus::WIDTH_NOT_FINITE))
     }
 
-    /// I_e, in saturations, that recruits an activation.
+    /// I_e of an activation, in saturations.
     fn strength_for(&self, activation: S) -> (S, PulseStatus) {
         let (activation, u) = admit_one(&self.activations, activation, S::ZERO, S::is_finite);
         let clipped = PulseStatus::ACTIVATION_CLIPPED;
@@ -220,8 +221,8 @@ impl<S: Scalar> RecruitmentCurve<S> {
         (self.threshold + self.back(activation).scaled(&self.reach), status)
     }
 
-    /// I_e/I of a width: w/(w + c), as 1 - 1/(1 + w/c), in which rounding cannot undo a growing
-    /// width.
+    /// I_e/I of a width: w/(w + c), computed as 1 - 1/(1 + w/c), which is monotonic in spite of
+    /// rounding.
     fn share(&self, width: S::Quantity) -> S {
         S::ONE - (S::ONE + S::of_quantity(width, &self.per_chronaxie)).reciprocal()
     }
@@ -231,20 +232,19 @@ impl<S: Scalar> RecruitmentCurve<S> {
         halves(x, |t| self.bend(t))
     }
 
-    /// x of U, both 0..1: each half is undone by itself, turned about its own middle.
+    /// x of U, both 0..1: each half is inverted by rotating it about its own middle.
     fn back(&self, activation: S) -> S {
         halves(activation, |u| S::ONE - self.bend(S::ONE - u))
     }
 
-    /// t/(t + m (1 - t)) for t in 0..1. What is divided grows with t and what it is divided by does
-    /// not, however they are rounded.
+    /// t/(t + m (1 - t)) for t in 0..1. Monotonic in spite of rounding: the numerator increases
+    /// with t, the denominator does not.
     fn bend(&self, t: S) -> S {
         t.ratio(self.slope - (self.slope - S::ONE) * t)
     }
 }
 
-/// A curve from (0, 0) to (1, 1) of two halves, the second of them the first turned about their
-/// middle.
+/// A point-symmetric curve from (0, 0) to (1, 1), made of its first half.
 fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     let first = x <= S::HALF;
     let rest = if first { x } else { S::ONE - x };
@@ -252,8 +252,7 @@ fn halves<S: Scalar>(x: S, half: impl Fn(S) -> S) -> S {
     if first { value } else { S::ONE - value }
 }
 
-/// The flag of the greatest amplitude or width, where that is not enough: to recruit nothing, it
-/// is.
+/// The flag if the greatest amplitude or width is returned: an activation of 0 is always reachable.
 fn unreachable<S: Scalar>(activation: S) -> PulseStatus {
     if activation > S::ZERO { PulseStatus::UNREACHABLE } else { PulseStatus::empty() }
 }

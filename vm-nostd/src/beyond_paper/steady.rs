@@ -5,10 +5,10 @@
 //!
 //! F_se = max(0, U Σ pcsa_i Af_i FL_i + max(0, F_pe1 + Σ pcsa_i Af_i F_pe2)).
 //!
-//! A wanted force gives the tendon's length, by the inverse of F_se, and with it the fascicle
-//! length; at a given length and frequency only U remains unknown. The inverse needs no search. If
-//! the force is unreachable, the nearest one is found by bisection; if the tendon is so long that
-//! there may be several equilibria, the result is checked by bisection.
+//! The inverse of F_se gives the tendon length for a requested force, and with it the fascicle
+//! length; then only U is unknown. The inverse model needs no search. If the force is unreachable,
+//! the nearest one is found by bisection; if the tendon is so long that there may be several
+//! equilibria, the result is checked by bisection.
 
 use crate::domain::Domain;
 use crate::equations::activation_frequency::ActivationFrequency;
@@ -68,7 +68,7 @@ pub struct Steady<S: Scalar> {
     pub relative_force: S,
     /// L, L_ce0.
     pub fascicle_length: S,
-    /// Flags; [`Status::FORCE_UNREACHABLE`] if no activation holds the wanted force.
+    /// Flags; [`Status::FORCE_UNREACHABLE`] if no activation gives the requested force.
     pub status: Status,
 }
 
@@ -93,11 +93,11 @@ impl<S: Scalar> Steady<S> {
     }
 }
 
-/// Bisections that bring a length to its last bit.
+/// Number of bisections that resolve a length to its last bit.
 const HALVINGS: usize = 40;
 /// Tolerance within which a force counts as reachable, F0: a tenth of the promised accuracy.
 const ROUNDING: f64 = 1e-4;
-/// Tolerance of the held force, F0.
+/// Tolerance of the steady force, F0.
 const PROMISED: f64 = 1e-3;
 /// Above this tendon length, in fascicle lengths, the descending limb of FL may be steeper than the
 /// tendon is stiff: there may be several equilibria, some unstable.
@@ -146,9 +146,9 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.settled(input, status)
     }
 
-    /// Activation that holds a force (N; in fixed point mN) on a path at a stimulation frequency,
-    /// within 0.1 % of F0. If there is none, the status is flagged, and activation and force are
-    /// the nearest ones. A force that is NaN counts as 0, a path as the longest.
+    /// Activation with a given steady force (N; in fixed point mN) on a path at a stimulation
+    /// frequency, within 0.1 % of F0. If there is none, the status is flagged, and activation and
+    /// force are the nearest ones. A force that is NaN counts as 0, a path as the longest.
     pub fn activation_for(
         &self,
         force: S::Force,
@@ -160,7 +160,8 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, rounding, path_length, stimulation_frequency)
     }
 
-    /// The same for a force relative to F0: in fixed point finer than mN if F0 is a few newtons.
+    /// The same for a force relative to F0. In fixed point its resolution is finer than 1 mN if F0
+    /// is a few newtons.
     pub fn activation_for_relative(
         &self,
         wanted: S,
@@ -170,7 +171,7 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, self.rounding, path_length, stimulation_frequency)
     }
 
-    /// Steady state at a force (F0); one that exceeds the reachable force by `rounding` counts as
+    /// Steady state at a force (F0); one outside the reachable range by up to `rounding` counts as
     /// reachable.
     fn holding(
         &self,

@@ -1,32 +1,32 @@
-//! How accurate a muscle is computed: into how many substeps its ticks are divided.
+//! Accuracy classes: the number of substeps per tick.
 
-/// How accurate a muscle is computed, and at what cost. Chosen when it is built.
+/// Accuracy class of a muscle, a trade-off of accuracy and cycles.
 ///
-/// What each class promises is in `host-sim/data/tolerances.csv` and held by `vm verify` and `vm
-/// sweep`. The error that falls with the class is that of the mechanics: where a path or a
-/// stimulation frequency steps, and where a slack tendon comes taut.
+/// The tolerances are in `host-sim/data/tolerances.csv` and checked by `vm verify` and `vm sweep`.
+/// The class determines the truncation error of the mechanics, which occurs where path or
+/// stimulation frequency step and where a slack tendon snaps taut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
-    /// One substep a tick, unless the muscle rings too fast for that on a stiff tendon. For
-    /// batteries: a few percent of F0 for some milliseconds after a jerk, as little as the other
-    /// classes on smooth inputs.
+    /// One substep per tick, unless the muscle rings too fast for that on a stiff tendon. For low
+    /// power: the error is a few percent of F0 for some milliseconds after a jerk, and that of the
+    /// other classes on smooth inputs.
     Economy,
-    /// Substeps of 0.25 ms or less.
+    /// Substeps of at most 0.25 ms.
     #[default]
     Standard,
-    /// Substeps of 0.1 ms or less. For regression.
+    /// Substeps of at most 0.1 ms. For regression tests.
     Fine,
 }
 
-/// What a class asks of the substeps.
+/// Limits of the substeps of a class.
 pub(crate) struct Substeps {
-    /// The longest, s, in a tick of 1 ms or more, and in a shorter one, of which less error is
-    /// expected.
+    /// Longest substep, s, in ticks of at least 1 ms and in shorter ones, which have a tighter
+    /// tolerance.
     pub(crate) longest: (f64, f64),
-    /// The greatest w h √A, of a muscle that rings on its tendon at angular frequency w and with
-    /// amplitude A in F0 where the path's speed jumps by 1 L_ce0/s. The error of a second-order
-    /// step goes with its square.
+    /// Greatest w h √A for a substep h, with angular frequency w and amplitude A (F0) of the
+    /// ringing after a jump of path velocity by 1 L_ce0/s. The error of a second-order step is
+    /// proportional to its square.
     pub(crate) ringing: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Limits of inputs and state that no parameter changes.
+//! Limits of inputs and state that do not depend on parameters.
 
 /// Greatest stimulation frequency, pps.
 pub(crate) const MAXIMUM_STIMULATION_FREQUENCY: f64 = 500.0;

@@ -1,4 +1,4 @@
-//! How the cross section of each fibre type is divided among its motor units.
+//! Division of the fibre types' cross sections among motor units.
 
 use crate::error::{Limit, ParameterError, within};
 use crate::params::MuscleParams;
@@ -7,26 +7,26 @@ use heapless::Vec;
 /// A rule for the sizes of a type's units, in order of recruitment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnitSizes<'a> {
-    /// So many units, the j-th in proportion to the type's rank + j.
+    /// A number of units, the j-th in proportion to the type's rank + j.
     Default(usize),
-    /// So many units, all alike.
+    /// A number of equal units.
     Equal(usize),
-    /// So many units, each larger than the one before by a share of it, -0.5 to 1.
+    /// A number of units, each larger than the one before by a fraction of it, -0.5 to 1.
     Geometric(usize, f64),
-    /// These sizes relative to each other, each 1e-12 to 1e12.
+    /// Relative sizes, each 1e-12 to 1e12.
     Listed(&'a [f64]),
 }
 
-const COUNT: &str = "units: their number";
-const TOO_MANY: &str = "units: the number of all types together";
+const COUNT: &str = "units: count";
+const TOO_MANY: &str = "units: total count";
 const GROWTH: &str = "units: geometric growth";
-const SIZE: &str = "units: a listed size";
-const SMALLEST: &str = "units: share of the smallest in its type";
-/// The smallest unit's share of its type's cross section.
+const SIZE: &str = "units: listed size";
+const SMALLEST: &str = "units: smallest share of a type";
+/// Lower limit of a unit's share in its type's cross section.
 const LEAST_SHARE: f64 = 1e-9;
-const TYPES: &str = "units: the number of types they were made for";
-const SHARE: &str = "units: the fraction of the type they were made for";
-/// What the units of a type may differ from its fraction by.
+const TYPES: &str = "units: number of types";
+const SHARE: &str = "units: fraction of the type";
+/// Tolerance between the sum of a type's units and its fraction.
 const SHARE_TOLERANCE: f64 = 1e-9;
 
 impl UnitSizes<'_> {
@@ -37,14 +37,14 @@ impl UnitSizes<'_> {
         }
     }
 
-    /// The size of unit `index` of a type of a rank, given that of the unit before.
+    /// Relative size of unit `index` in a type of a rank, given that of the unit before.
     fn relative(&self, index: usize, rank: u8, before: f64) -> f64 {
         match *self {
             Self::Default(_) => f64::from(rank) + (index + 1) as f64,
             Self::Equal(_) => 1.0,
             Self::Geometric(..) if index == 0 => 1.0,
             Self::Geometric(_, growth) => before * (1.0 + growth),
-            // None is asked for beyond the last.
+            // Not reached beyond the last size.
             Self::Listed(sizes) => sizes.get(index).copied().unwrap_or(before),
         }
     }
@@ -77,17 +77,17 @@ pub struct MotorUnits<const UNITS: usize> {
 }
 
 impl<const UNITS: usize> MotorUnits<UNITS> {
-    /// The units that divide the types of a muscle by a rule for each type. Refused where a type
-    /// has none, where all together are more than `UNITS`, where a size is out of its range, and
-    /// where a unit has less than 1e-9 of its type.
+    /// Divides the types of a muscle into units by a rule per type. An error if a type has no
+    /// units, if there are more than `UNITS` in total, if a size is out of range, or if a unit has
+    /// less than 1e-9 of its type.
     pub fn new<const N: usize>(
         params: &MuscleParams<N>,
         sizes: [UnitSizes<'_>; N],
     ) -> Result<Self, ParameterError> {
         let mut units = Vec::new();
         for (fiber, (sizes, type_params)) in sizes.iter().zip(&params.fibers).enumerate() {
-            let of_type = |error: ParameterError| ParameterError { fiber: Some(fiber), ..error };
-            sizes.validate(UNITS).map_err(of_type)?;
+            let in_type = |error: ParameterError| ParameterError { fiber: Some(fiber), ..error };
+            sizes.validate(UNITS).map_err(in_type)?;
             let rank = type_params.fiber_type.rank;
             let first = units.len();
             let (mut size, mut sum) = (0.0, 0.0);
@@ -102,19 +102,19 @@ impl<const UNITS: usize> MotorUnits<UNITS> {
                 })?;
             }
             for unit in units.iter_mut().skip(first) {
-                within(SMALLEST, unit.share / sum, LEAST_SHARE, 1.0).map_err(of_type)?;
+                within(SMALLEST, unit.share / sum, LEAST_SHARE, 1.0).map_err(in_type)?;
                 unit.share *= type_params.fraction / sum;
             }
         }
         Ok(Self { units })
     }
 
-    /// How many there are.
+    /// Number of units.
     pub fn count(&self) -> usize {
         self.units.len()
     }
 
-    /// Refuses a muscle whose types are not those that the units were made for.
+    /// Refuses a muscle whose types do not match the units.
     pub(super) fn validate<const N: usize>(
         &self,
         params: &MuscleParams<N>,
@@ -122,8 +122,8 @@ impl<const UNITS: usize> MotorUnits<UNITS> {
         let last = self.units.last().map_or(0.0, |unit| (unit.fiber + 1) as f64);
         within(TYPES, last, N as f64, N as f64)?;
         for (fiber, type_params) in params.fibers.iter().enumerate() {
-            let of_type = self.units.iter().filter(|unit| unit.fiber == fiber);
-            let share: f64 = of_type.map(|unit| unit.share).sum();
+            let units = self.units.iter().filter(|unit| unit.fiber == fiber);
+            let share: f64 = units.map(|unit| unit.share).sum();
             let fraction = type_params.fraction;
             within(SHARE, share, fraction - SHARE_TOLERANCE, fraction + SHARE_TOLERANCE)
                 .map_err(|error| ParameterError { fiber: Some(fiber), ..error })?;
@@ -131,7 +131,7 @@ impl<const UNITS: usize> MotorUnits<UNITS> {
         Ok(())
     }
 
-    /// That there are none.
+    /// The error for missing units.
     pub(super) fn none(&self) -> ParameterError {
         let limit = Limit::Within { least: 1.0, most: UNITS as f64 };
         ParameterError { field: COUNT, fiber: None, value: 0.0, limit }

@@ -1,5 +1,5 @@
-//! Tests of every element against the paper's formula in `f64`, and of every slope against a
-//! difference quotient.
+//! Tests every element against the paper's formula in `f64`, and every slope against a difference
+//! quotient.
 
 use crate::ContinuousMuscle;
 use crate::equations::activation_frequency::ActivationFrequency;
@@ -25,7 +25,7 @@ const TYPES: [FiberType; 5] = [
     feline_vm4::FAST,
 ];
 
-/// Numbers evenly from `least` to `most`.
+/// Equidistant numbers from `least` to `most`.
 fn spaced(least: f64, most: f64, count: u32) -> Vec<f64> {
     (0..=count).map(|i| least + (most - least) * f64::from(i) / f64::from(count)).collect()
 }
@@ -40,8 +40,8 @@ fn q(value: f64) -> Fixed {
     Fixed::from_f64(value)
 }
 
-/// Largest error of each relation that force is made of, for force in F0 at full activation, in
-/// `f32`, in fixed point and in `f64`.
+/// Largest error of each relation, of force in F0 at full activation, in `f32`, fixed point and
+/// `f64`.
 const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("F_se", [3e-7, 6.6e-8, 6.7e-16]),
     ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
@@ -51,7 +51,7 @@ const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
 ];
 
-/// A tick, which slopes by length are given per.
+/// Time step, s; slopes by length are per tick.
 const TICK: f64 = 1e-3;
 
 /// Largest error of a quantity over a sweep, in each arithmetic.
@@ -93,7 +93,7 @@ fn slope(f: impl Fn(f64) -> f64, x: f64) -> f64 {
 }
 
 #[test]
-fn the_tendon_pulls_as_the_paper_says() {
+fn tendon_force_agrees_with_the_paper() {
     let p = &paper_table_1::ELEMENTS.tendon;
     let (fascicle, tendon) = (0.11, 0.02);
     let step = TimeStep::MILLISECOND;
@@ -128,7 +128,7 @@ fn the_tendon_pulls_as_the_paper_says() {
 }
 
 #[test]
-fn the_passive_elements_are_the_papers() {
+fn passive_elements_agree_with_the_paper() {
     let e = &paper_table_1::ELEMENTS;
     let longest = 1.49875;
     let step = TimeStep::MILLISECOND;
@@ -155,7 +155,7 @@ fn the_passive_elements_are_the_papers() {
 }
 
 #[test]
-fn force_length_is_the_papers() {
+fn force_length_agrees_with_the_paper() {
     let mut value = Worst::default();
     for t in TYPES {
         let p = &t.force_length;
@@ -170,7 +170,7 @@ fn force_length_is_the_papers() {
 }
 
 #[test]
-fn force_velocity_is_the_papers_on_both_branches() {
+fn force_velocity_agrees_with_the_paper_on_both_branches() {
     let mut value = Worst::default();
     for t in TYPES {
         let p = &t.force_velocity;
@@ -194,7 +194,7 @@ fn force_velocity_is_the_papers_on_both_branches() {
                 let at_fixed = fixed.on(&curve, Fixed::ZERO, v > 0.0, q(v)).0;
                 let at32 = f32.on(&f32.at(l as f32, 0.0), 0.0, v > 0.0, v as f32).0;
                 value.see(at32, at_fixed, at64(v).0, exact);
-                // Half a tick later, with the length gone half of its way.
+                // Half a tick later, after half of the change in length.
                 let later = f64.on(&f64.at(l, 2e-3), 0.5, v > 0.0, v).0;
                 let there = f64.on(&f64.at(l + 1e-3, 0.0), 0.0, v > 0.0, v).0;
                 assert!((later - there).abs() < 2e-5, "L {l}, V {v}: {later} {there}");
@@ -216,7 +216,7 @@ fn force_velocity_is_the_papers_on_both_branches() {
 }
 
 #[test]
-fn activation_by_frequency_is_the_papers() {
+fn activation_frequency_agrees_with_the_paper() {
     let mut value = Worst::default();
     for t in TYPES {
         let p = &t.activation;
@@ -241,7 +241,7 @@ fn activation_by_frequency_is_the_papers() {
     value.assert_bound("Af");
 }
 
-/// Euler's method at very short steps, as an oracle.
+/// Euler's method with very short steps, as an oracle.
 fn excitation_by_small_steps(
     t: &FiberType,
     start: (f64, f64),
@@ -266,7 +266,7 @@ fn excitation_by_small_steps(
 }
 
 #[test]
-fn excitation_is_exact_also_where_its_two_lags_cross_within_a_tick() {
+fn excitation_is_exact_even_if_its_lags_cross_within_a_tick() {
     // Rising, falling, at the kink f_int = f_eff, and crossing either way.
     let cases = [
         ((0.2, 0.1), 1.5),
@@ -303,7 +303,7 @@ fn a_lag_is_exact_at_mid_tick_and_at_the_end() {
 }
 
 #[test]
-fn the_share_of_a_tick_above_a_level_is_found_by_where_it_is_crossed() {
+fn the_share_of_a_tick_above_a_level_is_interpolated() {
     assert_eq!(share_above(0.0, 0.05, 0.1), 0.0);
     assert_eq!(share_above(0.1, 0.2, 0.1), 1.0);
     assert!((share_above(0.0, 0.4, 0.1) - 0.75_f64).abs() < 1e-15);
@@ -324,8 +324,8 @@ fn the_readme_has_the_bounds_of_the_relations_and_their_sum() {
 }
 
 #[test]
-fn errors_of_held_forces_are_below_the_sum_of_the_bounds() {
-    fn held<S: Scalar>(activation: f64, path: f64) -> f64 {
+fn errors_of_steady_forces_are_below_the_sum_of_the_bounds() {
+    fn steady_force<S: Scalar>(activation: f64, path: f64) -> f64 {
         let muscle = ContinuousMuscle::<S, 2>::build(&PAPER_MUSCLE, TimeStep::MILLISECOND).unwrap();
         let path = S::path_length(path);
         let mut state = muscle.rest(path).unwrap();
@@ -341,14 +341,14 @@ fn errors_of_held_forces_are_below_the_sum_of_the_bounds() {
     let (mut f32, mut fixed) = (0.0_f64, 0.0_f64);
     for activation in spaced(0.0, 1.0, 10).into_iter().map(shared) {
         for path in [0.14, 0.16, 0.18].map(|path| f64::from(path as f32)) {
-            let exact = held::<f64>(activation, path);
-            f32 = f32.max((held::<f32>(activation, path) - exact).abs());
-            fixed = fixed.max((held::<Fixed>(activation, path) - exact).abs());
+            let exact = steady_force::<f64>(activation, path);
+            f32 = f32.max((steady_force::<f32>(activation, path) - exact).abs());
+            fixed = fixed.max((steady_force::<Fixed>(activation, path) - exact).abs());
         }
     }
     assert!(f32 <= sum(0), "f32: {f32:e} > {:e}", sum(0));
-    // A velocity that moves the tendon's extension by less than half an ULP a tick moves nothing:
-    // 3e-5 L_ce0/s, over which FV rises by more than its own bound.
+    // A velocity that changes the tendon's extension by less than half an ULP per tick has no
+    // effect: 3e-5 L_ce0/s, over which FV changes by more than its error bound.
     const UNRESOLVED: f64 = 3e-5;
     assert!(fixed <= sum(1) + UNRESOLVED, "fixed: {fixed:e} > {:e}", sum(1));
 }

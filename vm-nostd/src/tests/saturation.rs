@@ -1,7 +1,7 @@
-//! Tests that in fixed point no sum and no product saturates in a tick without flags: published
-//! muscles, inputs over their whole domain, at up to 5 L_ce0/s.
+//! Tests that in fixed point no sum or product saturates in a tick without flags: published
+//! muscles, inputs over their whole validity range, at up to 5 L_ce0/s.
 //!
-//! A product with a constant may saturate: softplus and exp have reached their limits there, far
+//! A product with a constant may saturate: softplus and exp have reached their limits then, far
 //! from a slack tendon and at speeds far from V_Y. A tendon beyond its range is flagged.
 
 use crate::recruitment::{
@@ -31,14 +31,14 @@ fn muscles() -> Vec<MuscleParams<2>> {
         (human_vm4::ELEMENTS, [human_vm4::SUPER_SLOW, human_vm4::FAST]),
         (human_vm4::ELEMENTS, [human_vm4::SLOW, human_vm4::FAST]),
         (feline_vm4::ELEMENTS, [feline_vm4::SLOW, feline_vm4::FAST]),
-        // Types alone: without a fast one, fascicles may be so short that their filaments are
-        // compressed most.
+        // Single types: without a fast type the validity range includes shorter fascicles, with
+        // more compression of the filaments.
         (human_vm4::ELEMENTS, [human_vm4::SLOW; 2]),
         (feline_vm4::ELEMENTS, [feline_vm4::SUPER_SLOW; 2]),
         (feline_vm4::ELEMENTS, [feline_vm4::SLOW; 2]),
     ];
-    // Mass (kg), fascicles and tendon (m): a shoulder, a hand, a calf, a neck; and the ends of what
-    // is published.
+    // Mass (kg), fascicle and tendon length (m) of a shoulder, hand, calf and neck muscle, and the
+    // extremes of published morphometry.
     let sizes = [
         (0.0975, 0.11, 0.02),
         (4e-3, 0.032, 0.06),
@@ -107,8 +107,8 @@ fn nothing_saturates_in_a_tick_without_a_flag() {
         ];
         for (mode, (saturated, silent)) in found.into_iter().enumerate() {
             assert!(saturated == 0, "muscle {index}, mode {mode}: {saturated} of {silent} ticks");
-            // Of 6,000; on the longest paths fascicles are outside their domain unless they are
-            // active, and said to be.
+            // Of 6,000. On the longest paths passive fascicles are outside the validity range and
+            // flagged.
             assert!(
                 silent > 2000,
                 "muscle {index}, mode {mode}: only {silent} ticks without a flag"
@@ -118,7 +118,7 @@ fn nothing_saturates_in_a_tick_without_a_flag() {
 }
 
 #[test]
-fn a_sum_and_a_product_that_saturate_are_seen() {
+fn saturated_sums_and_products_are_counted() {
     let large = Fixed::from_f64(100.0);
     saturations::take();
     let _ = [large + large, large * large, -large - large, large * Fixed::from_f64(1.2)];

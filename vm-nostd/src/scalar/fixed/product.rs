@@ -1,32 +1,31 @@
-//! Products of two words in two words.
+//! 32 x 32 to 64-bit products.
 //!
-//! ARMv6-M (Cortex-M0, M0+) multiplies into one word only; the compiler's routine for 64-bit
-//! products, of which half of each factor is 0, took 61 % of a tick there. Four products of half
-//! words make one of two words.
+//! ARMv6-M (Cortex-M0, M0+) only has 32-bit products. Four products of half words are faster there
+//! than the compiler's routine, which multiplies 64-bit factors.
 
-/// Whether the core lacks UMULL and SMULL: of the Arm cores, those that have no atomic
-/// read-modify-write either, which is what stable Rust tells of them.
+/// Whether the core lacks UMULL and SMULL. Stable Rust has no `cfg` for that; these Arm cores also
+/// lack atomic read-modify-write, for which it has one.
 const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// The product of two numbers: at most 2^62.
+/// Signed product: at most 2^62.
 #[inline(always)]
 pub(super) fn signed(a: i32, b: i32) -> i64 {
     if HALVES { words(signed_by_halves(a, b)) } else { i64::from(a) * i64::from(b) }
 }
 
-/// The product of a number and one that is not negative: below 2^63.
+/// Product of a signed and an unsigned number: below 2^63 in magnitude.
 #[inline(always)]
 pub(super) fn mixed(a: i32, b: u32) -> i64 {
     if HALVES { words(mixed_by_halves(a, b)) } else { i64::from(a) * i64::from(b) }
 }
 
-/// The product of two numbers that are not negative.
+/// Unsigned product.
 #[inline(always)]
 pub(super) fn unsigned(a: u32, b: u32) -> u64 {
     if HALVES { words(unsigned_by_halves(a, b)) as u64 } else { u64::from(a) * u64::from(b) }
 }
 
-/// A high and a low word as one number.
+/// Joins a high and a low word.
 #[inline(always)]
 fn words((high, low): (u32, u32)) -> i64 {
     (u64::from(high) << 32 | u64::from(low)) as i64
@@ -75,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_by_halves_are_the_products() {
+    fn products_by_halves_are_exact() {
         let mut numbers: Vec<u32> =
             vec![0, 1, 2, 0xFFFF, 0x1_0000, 0x1_0001, 0x7FFF_FFFF, 0x8000_0000, 0x8000_FFFF];
         numbers.extend(numbers.clone().iter().map(|n| !n));
