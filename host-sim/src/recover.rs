@@ -1,6 +1,6 @@
-//! Proof by recovery: muscles whose parameters are known are recorded by a protocol, with noise,
-//! and fitted by the code of `vm fit`; how far what it finds is from what they are, and how often
-//! its intervals hold it.
+//! Parameter recovery: synthetic patients with known parameters are recorded with a protocol and
+//! noise and fitted by the code of `vm fit`. Reports the errors of the estimates and the coverage
+//! of their confidence intervals.
 //!
 //! The protocol and the results are in `docs/fitting.md`.
 
@@ -18,5 +18,5 @@ pub use protocol::{WriteError, bouts, stimulated, write};
 pub use study::Study;
 pub use summary::{Recovered, Summary, summaries, text};
 
-/// The mean of the patients, where no other muscle is named.
+/// Default mean muscle of the patients.
 pub const MUSCLE: &str = include_str!("../data/recovery_muscle.toml");

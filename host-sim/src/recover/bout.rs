@@ -1,4 +1,4 @@
-//! One recording of a protocol: what the muscle is made to do.
+//! A bout: the inputs of one recording of a protocol.
 
 use crate::fit::Role;
 use crate::muscle_file::NamedMuscle;
@@ -6,21 +6,21 @@ use crate::reference::{Input, Mode, Muscle};
 use crate::trace::InputTrace;
 use vm_nostd::{ParameterError, Pulse, RecruitmentCurve, RecruitmentCurveParams};
 
-/// Pairs of a time (s) and the value from then on.
+/// Pairs of time (s) and value from that time on.
 pub type Steps = Vec<(f64, f64)>;
 
-/// A recording, from rest.
+/// A recording that starts at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bout {
-    /// Name, of its files too.
+    /// Name, also of its files.
     pub name: &'static str,
-    /// What it is for.
+    /// Role.
     pub role: Role,
-    /// How long it lasts, s.
+    /// Duration, s.
     pub seconds: f64,
-    /// Effort (natural) or amplitude of the stimulus over that of [`Setting::full_ma`]; 0 to 1.
+    /// Activation (natural) or amplitude of the stimulus over [`Setting::full_ma`]; 0 to 1.
     pub level: Steps,
-    /// Width of the pulses, µs.
+    /// Pulse width, µs.
     pub width_us: Steps,
     /// Stimulation frequency, pps; 0 in natural recruitment.
     pub pps: Steps,
@@ -28,27 +28,26 @@ pub struct Bout {
     pub path: Vec<(f64, f64)>,
 }
 
-/// Width of the pulses where a bout does not vary it, µs.
+/// Default pulse width, µs.
 pub const WIDTH_US: f64 = 300.0;
-/// A pulse of level 1 is so many times what saturates the mean muscle: it saturates patients, too.
+/// Amplitude at level 1 over the saturation of the mean muscle, so that it saturates all patients.
 const SATURATION: f64 = 1.6;
-/// Tick of what is played, s.
+/// Time step of the inputs, s.
 pub const TICK: f64 = 1e-3;
 
-/// What a protocol is scaled by: the muscle that is expected.
+/// Scales of a protocol, from the expected muscle.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// Path at which the fascicles are at L_ce0 with the tendon at F0, m.
     pub neutral: f64,
     /// L_ce0, m.
     pub fascicle: f64,
-    /// Amplitude at level 1, mA; none without a recruitment curve, where the level is the
-    /// activation.
+    /// Amplitude at level 1, mA; `None` without a recruitment curve: the level is the activation.
     pub full_ma: Option<f64>,
 }
 
 impl Setting {
-    /// For a muscle and a mode.
+    /// The scales for a muscle and a mode.
     pub fn of(named: &NamedMuscle, mode: Mode) -> Self {
         let Muscle { L_ce0: fascicle, L_se0: tendon, .. } = named.muscle;
         let curve = named.curve.filter(|_| mode == Mode::Fes);
@@ -66,20 +65,19 @@ impl Setting {
 }
 
 impl Bout {
-    /// The file of its inputs, as `vm run` and `vm hil` take it.
+    /// Input file for `vm run` and `vm hil`.
     pub fn file_name(&self) -> String {
         format!("{}.csv", self.name)
     }
 
-    /// For how long the muscle is driven, s.
+    /// Time with activation or stimulation, s.
     pub fn driven(&self) -> f64 {
         let ends = self.level.iter().skip(1).map(|step| step.0).chain([self.seconds]);
         let lasts = self.level.iter().zip(ends).map(|(step, end)| (step.1, end - step.0));
         lasts.filter(|(level, _)| *level > 0.0).map(|(_, lasts)| lasts).sum()
     }
 
-    /// What a muscle with this recruitment curve, on a path longer by `offset` (m), is made to do,
-    /// tick by tick.
+    /// Inputs per tick of a muscle with a recruitment curve, on a path longer by `offset` (m).
     pub fn inputs(
         &self,
         setting: &Setting,
@@ -89,7 +87,7 @@ impl Bout {
         let curve = curve.map(RecruitmentCurve::<f64>::build).transpose()?;
         let input = |tick: usize| {
             let end = tick as f64 * TICK;
-            // In force during the tick.
+            // Constant during the tick.
             let middle = end - 0.5 * TICK;
             let level = at(&self.level, middle);
             let activation = match (&curve, setting.full_ma) {
@@ -112,13 +110,13 @@ impl Bout {
     }
 }
 
-/// The value of steps at a time; before the first, the first.
+/// Value of steps at a time; the first value also applies before.
 fn at(steps: &Steps, time: f64) -> f64 {
     let after = steps.partition_point(|step| step.0 <= time);
     steps[after.saturating_sub(1)].1
 }
 
-/// Linear between the points.
+/// Linear interpolation.
 fn between(points: &[(f64, f64)], time: f64) -> f64 {
     let after = points.partition_point(|point| point.0 <= time);
     match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {

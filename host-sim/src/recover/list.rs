@@ -1,4 +1,4 @@
-//! The list of recordings of a protocol, as `vm fit` takes it, and what is free in it.
+//! The list of trials of a protocol for `vm fit`, with its free parameters.
 
 use super::bout::{Bout, Setting, Steps};
 use crate::engine::mode_name;
@@ -8,17 +8,17 @@ use crate::muscle_file::curve::{self, CURVE};
 use crate::reference::Mode;
 use std::fmt::Write;
 
-/// Where recordings of force are looked for, below the list's folder.
+/// Folder of the force recordings, below the list's folder.
 pub const RECORDED: &str = "recorded";
-/// By how much the path is longer than was thought, m.
+/// Offset of the path, m.
 pub const OFFSET: &str = "path_offset_m";
-/// Its spread, m; assumed: as much as that of the tendon's length, with which the path of a limb
-/// goes.
+/// Spread of the offset, m. Assumed: that of the tendon's length, with which a limb's path scales.
 const OFFSET_SPREAD: f64 = 0.025;
-/// Bounds are so many spreads from the mean, but not below a fifth of it.
+/// Distance of the bounds from the mean, in spreads; the lower bound is at least a fifth of the
+/// mean.
 const FAR: f64 = 4.0;
 
-/// A parameter that is fitted, and what is known of it beforehand.
+/// A free parameter with its prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
     /// Name.
@@ -27,9 +27,9 @@ pub struct Free {
     pub mean: f64,
     /// Standard deviation, in the file's unit.
     pub spread: f64,
-    /// Least and greatest.
+    /// Bounds.
     pub bounds: (f64, f64),
-    /// Where the spread is from.
+    /// Source of the spread.
     pub source: String,
 }
 
@@ -42,7 +42,7 @@ const ALWAYS: [&str; 6] = [
     OFFSET,
 ];
 
-/// What is fitted in a mode to recordings of a muscle such as this one.
+/// Free parameters of a mode for a muscle.
 pub fn free(named: &NamedMuscle, mode: Mode) -> Vec<Free> {
     let mut names: Vec<String> = ALWAYS.map(str::to_owned).to_vec();
     let types = named.muscle.fibers.len();
@@ -57,7 +57,7 @@ pub fn free(named: &NamedMuscle, mode: Mode) -> Vec<Free> {
     }
     if named.muscle.fatigue.is_some() {
         let keys = ["T_fat_s", "T_rec_s", "fit_min", "beta"];
-        // Natural firing tires as 100 pps do, where beta does not count.
+        // Natural firing fatigues like 100 pps, where beta has no effect.
         let keys = if mode == Mode::Fes { &keys[..] } else { &keys[..3] };
         names.extend(keys.iter().map(|key| format!("fatigue.{key}")));
     }
@@ -77,7 +77,7 @@ fn one(named: &NamedMuscle, name: String) -> Option<Free> {
     };
     let row = spread(&name)?;
     let spread = row.relative_spread * mean;
-    // Shares, of a whole.
+    // Fractions are limited to 0..1.
     let whole = name.ends_with("fraction")
         || ["recruitment_saturation", "fatigue.fit_min", "fatigue.beta"].contains(&name.as_str());
     let greatest = if whole { 0.99 } else { f64::INFINITY };
@@ -90,7 +90,7 @@ fn one(named: &NamedMuscle, name: String) -> Option<Free> {
     Some(Free { name, mean, spread, bounds, source })
 }
 
-/// The list.
+/// The text of the list.
 pub fn list(named: &NamedMuscle, mode: Mode, bouts: &[Bout]) -> String {
     text(named, mode, bouts).expect("a string grows")
 }

@@ -1,4 +1,4 @@
-//! A synthetic patient: a muscle drawn from the spreads, and what it does in a recording.
+//! A synthetic patient: a muscle drawn from the spreads, and its recordings.
 
 use super::bout::{Bout, Setting};
 use super::list::{Free, OFFSET};
@@ -13,39 +13,38 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 use vm_nostd::RecruitmentCurveParams;
 
-/// No patient is further than so many spreads from the mean in any parameter.
+/// Largest distance of a parameter from its mean, in spreads.
 const FARTHEST: f64 = 2.5;
-/// Fascicles of a patient at rest are between these lengths wherever the protocol holds them,
-/// L_ce0: a joint does not take its muscle further.
+/// Range of fascicle lengths at rest on the paths of the protocol, L_ce0, as limited by a joint.
 const LENGTHS: (f64, f64) = (0.6, 1.35);
-/// Longest fascicles of a patient, L_ce0: 1.4 of the human muscles here is a guess between 1.3 and
-/// 1.5.
+/// Range of L_max of a patient, L_ce0: the 1.4 of the human muscles is an assumption between 1.3
+/// and 1.5.
 const LONGEST: (f64, f64) = (1.2, 1.6);
-/// So many draws that no such muscle can be had from: the spreads are not those of muscles.
+/// Limit of draws until a valid muscle is found.
 const DRAWS: usize = 10_000;
-/// Noise of a reading, share of F0.
+/// Noise of a reading (standard deviation), share of F0.
 const NOISE: f64 = 0.01;
-/// One reading per so many ticks.
+/// Ticks per reading.
 pub const STRIDE: usize = 10;
 
-/// Why there is no patient, or no recording of one.
+/// Why a patient could not be drawn or recorded.
 #[derive(Debug, thiserror::Error)]
 pub enum PatientError {
-    /// None could be drawn.
-    #[error("none of {DRAWS} muscles drawn can be built and moved as the protocol does")]
+    /// No draw gave a valid muscle.
+    #[error("none of {DRAWS} drawn muscles is valid on the paths of the protocol")]
     None,
     /// A run failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// No such recruitment curve.
+    /// Invalid recruitment curve.
     #[error(transparent)]
     Curve(#[from] vm_nostd::ParameterError),
 }
 
-/// A muscle whose parameters are known.
+/// A muscle with known parameters.
 #[derive(Clone, Debug)]
 pub struct Patient {
-    /// Their values, in the order of what is free.
+    /// Values of the free parameters, in their order.
     pub truths: Vec<f64>,
     /// The muscle.
     pub muscle: Muscle,
@@ -55,7 +54,7 @@ pub struct Patient {
 }
 
 impl Patient {
-    /// The patient of a number: the same whenever and in whatever order it is asked for.
+    /// The patient with a number; independent of the order of calls.
     pub fn draw(
         named: &NamedMuscle,
         mode: Mode,
@@ -94,7 +93,7 @@ impl Patient {
                 .all(|change| rests(setting.neutral + change * setting.fascicle + self.offset))
     }
 
-    /// Force (N) at every reading of a bout, by the reference.
+    /// Force (N) of the reference at every reading of a bout.
     pub fn forces(
         &self,
         setting: &Setting,
@@ -112,7 +111,7 @@ impl Patient {
     }
 }
 
-/// A muscle, a curve and an offset with these values.
+/// Muscle, recruitment curve and path offset with given values of the free parameters.
 fn with(
     named: &NamedMuscle,
     free: &[Free],
@@ -140,7 +139,7 @@ fn with(
 }
 
 impl Free {
-    /// What it is of.
+    /// Kind of parameter.
     pub fn place(&self) -> Place {
         match self.name.strip_prefix(CURVE).and_then(curve::key) {
             _ if self.name == OFFSET => Place::Offset,
@@ -150,7 +149,7 @@ impl Free {
     }
 }
 
-/// A value within its bounds, normally distributed but for the farthest.
+/// A normally distributed value, truncated to its bounds.
 fn drawn(free: &Free, generator: &mut ChaCha8Rng) -> f64 {
     loop {
         let far = normal(generator);
@@ -161,9 +160,9 @@ fn drawn(free: &Free, generator: &mut ChaCha8Rng) -> f64 {
     }
 }
 
-/// Standard normal, by Box and Muller.
+/// Standard normal number (Box-Muller).
 fn normal(generator: &mut ChaCha8Rng) -> f64 {
-    // 53 bits, above 0 up to 1.
+    // 53 bits in (0, 1].
     let mut share = || ((generator.next_u64() >> 11) + 1) as f64 * 2_f64.powi(-53);
     let radius = (-2.0 * share().ln()).sqrt();
     radius * (TAU * share()).cos()
@@ -179,7 +178,7 @@ mod tests {
         let all: Vec<f64> = (0..10_000).map(|_| normal(&mut generator)).collect();
         let mean = all.iter().sum::<f64>() / 1e4;
         let variance = all.iter().map(|x| x * x).sum::<f64>() / 1e4;
-        // Four standard errors: 0.01, and sqrt(2/n) = 0.014 of a variance.
+        // Four standard errors; those are 0.01 of the mean and sqrt(2/n) = 0.014 of the variance.
         assert!(mean.abs() < 0.04 && (variance - 1.0).abs() < 0.057, "{mean} {variance}");
         let beyond = all.iter().filter(|x| x.abs() > 1.96).count();
         assert!((412..=588).contains(&beyond), "5 %, four standard errors of 22: {beyond}");

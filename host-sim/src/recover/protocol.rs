@@ -1,5 +1,5 @@
-//! The recordings that tell a muscle's parameters: half a minute of stimulation, or of effort, at
-//! three lengths.
+//! The recordings that determine a muscle's parameters: half a minute of stimulation or voluntary
+//! contraction at three lengths.
 
 use super::bout::{Bout, Setting, Steps, WIDTH_US};
 use super::list::list;
@@ -11,13 +11,14 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Short and long of the neutral path, L_ce0.
+/// Short and long path relative to the neutral one, L_ce0.
 const SHORT: f64 = -0.2;
 const LONG: f64 = 0.12;
-/// Frequency of stimulation where it is not what varies, pps.
+/// Default stimulation frequency, pps.
 const PPS: f64 = 40.0;
 
-/// Contractions (level, pps) of `on` s, `off` s apart, from 0.1 s on: level, frequency and the end.
+/// Contractions (level, pps) of `on` s with pauses of `off` s from 0.1 s on: level, frequency and
+/// end.
 fn contractions(of: &[(f64, f64)], on: f64, off: f64) -> (Steps, Steps, f64) {
     let (mut level, mut pps) = (vec![(0.0, 0.0)], vec![(0.0, of[0].1)]);
     let mut time = 0.1;
@@ -29,7 +30,7 @@ fn contractions(of: &[(f64, f64)], on: f64, off: f64) -> (Steps, Steps, f64) {
     (level.into_iter().map(|(t, v)| (round(t), v)).collect(), pps, time)
 }
 
-/// To a millisecond, as the files have it.
+/// Rounded to a millisecond, the resolution of the files.
 fn round(time: f64) -> f64 {
     (time * 1e3).round() * 1e-3
 }
@@ -39,7 +40,7 @@ fn bout(name: &'static str, at: f64, (level, pps, seconds): (Steps, Steps, f64))
     Bout { name, role: Role::Fit, seconds, level, width_us, pps, path }
 }
 
-/// Amplitude up a stair at one width, then at a shorter one, which tells the chronaxie.
+/// A staircase of amplitudes at one width, then at a shorter one, which determines the chronaxie.
 fn staircase() -> Bout {
     const STEP: f64 = 0.35;
     let wide = (2..=12).map(|step| f64::from(step) / 12.0);
@@ -55,7 +56,7 @@ fn staircase() -> Bout {
     stair
 }
 
-/// A passive stretch from short to long, then there and back while the muscle contracts.
+/// A passive stretch from short to long, then shortening and stretch while the muscle contracts.
 fn movement(level: f64, pps: f64) -> Bout {
     let steps = vec![(0.0, 0.0), (1.8, level), (4.2, 0.0)];
     let mut moved = bout("movement", 0.0, (steps, vec![(0.0, pps)], 4.8));
@@ -64,7 +65,7 @@ fn movement(level: f64, pps: f64) -> Bout {
     moved
 }
 
-/// Two contractions that tire, at different frequencies, and short ones that show the recovery.
+/// Two fatiguing contractions at different frequencies, and short ones that show the recovery.
 fn fatigue(level: f64, frequencies: [f64; 2]) -> Bout {
     let [fast, slow] = frequencies;
     let steps = [
@@ -82,7 +83,7 @@ fn fatigue(level: f64, frequencies: [f64; 2]) -> Bout {
     bout("fatigue", 0.0, (steps.to_vec(), pps, 31.2))
 }
 
-/// Two strides, and not to fit to: path and level as smooth as in walking, bursts of two heights.
+/// Two strides for prediction: smooth path and level as in walking, bursts of two amplitudes.
 fn gait(pps: f64) -> Bout {
     const STRIDE: f64 = 1.1;
     const FINE: f64 = 0.02;
@@ -108,7 +109,7 @@ fn gait(pps: f64) -> Bout {
     walk
 }
 
-/// The bouts of a mode, each from rest; `tires` says whether the muscle does.
+/// The bouts of a mode, each starting at rest; `tires`: the muscle has fatigue parameters.
 pub fn bouts(mode: Mode, tires: bool) -> Vec<Bout> {
     let mut all = if mode == Mode::Fes {
         let at = |frequencies: &[f64]| frequencies.iter().map(|&f| (1.0, f)).collect::<Vec<_>>();
@@ -145,13 +146,12 @@ pub fn bouts(mode: Mode, tires: bool) -> Vec<Bout> {
     all
 }
 
-/// For how long a protocol drives the muscle, s, without what is predicted.
+/// Time with activation or stimulation in all fitted bouts, s.
 pub fn stimulated(bouts: &[Bout]) -> f64 {
     bouts.iter().filter(|bout| bout.role == Role::Fit).map(Bout::driven).sum()
 }
 
-/// Writes the inputs of a protocol into a folder, and the list of recordings that `vm fit` takes
-/// when they are there.
+/// Writes the inputs of a protocol and its list of trials for `vm fit` to a folder.
 pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), WriteError> {
     let setting = Setting::of(named, mode);
     let bouts = bouts(mode, named.muscle.fatigue.is_some());
@@ -169,13 +169,13 @@ pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), Write
     Ok(())
 }
 
-/// Why a protocol was not written.
+/// Why a protocol could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// No such recruitment curve.
+    /// Invalid recruitment curve.
     #[error(transparent)]
     Curve(#[from] vm_nostd::ParameterError),
-    /// A file.
+    /// A file could not be written.
     #[error(transparent)]
     File(#[from] TraceError),
 }

@@ -1,4 +1,4 @@
-//! Many patients, each recorded and fitted: one row each, in a table that can be gone on with.
+//! Records and fits many patients: one row per patient, in a table that can be resumed.
 
 use super::bout::{Bout, Setting};
 use super::list::{Free, RECORDED, free};
@@ -14,28 +14,28 @@ use crate::trace::write_atomically;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Patients, and how they are fitted.
+/// A study: patients and settings of the fits.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// Their mean.
+    /// Mean muscle.
     pub start: Start,
-    /// How many of each mode.
+    /// Number of patients per mode.
     pub patients: usize,
-    /// How they are recruited.
+    /// Recruitment modes.
     pub modes: Vec<Mode>,
-    /// How each is searched for; the seed also draws them.
+    /// Settings of the search; the seed also draws the patients.
     pub search: Search,
 }
 
-/// What a row says of a parameter: `truth`, `fitted`, and the standard error, none at a bound.
+/// Columns per parameter: true value, fitted value, and standard error (empty at a bound).
 pub const OF_PARAMETER: [&str; 3] = ["truth", "fitted", "error"];
-/// What else it says, first.
+/// First columns.
 pub const LEADING: [&str; 2] = ["case", "mode"];
-/// And last.
+/// Last columns.
 pub const TRAILING: [&str; 3] = ["predicted_rms_pct_f0", "noise_ratio", "problem"];
 
 impl Study {
-    /// What is free in any of the modes, each once.
+    /// The free parameters of all modes, without duplicates.
     pub fn names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for &mode in &self.modes {
@@ -52,7 +52,7 @@ impl Study {
         self.modes[case % self.modes.len()]
     }
 
-    /// The first two lines of the table: what made it, and its columns.
+    /// First two lines of the table: the command with the model's version, and the columns.
     fn head(&self) -> [String; 2] {
         let modes: Vec<&str> = self.modes.iter().map(|&mode| mode_name(mode)).collect();
         let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
@@ -83,7 +83,7 @@ impl Study {
         bouts(mode, self.start.named.muscle.fatigue.is_some())
     }
 
-    /// Fits all patients that are not in the table yet.
+    /// Fits all patients that have no row yet.
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |case: usize| vec![case.to_string(), mode_name(self.mode(case)).to_owned()];
         let count = self.patients * self.modes.len();
@@ -118,7 +118,7 @@ impl Study {
                 row.extend(rest);
                 row.push(String::new());
             }
-            // A row is a line, or it could be torn without its being seen.
+            // One line per row, so that a truncated row is recognised.
             Err(problem) => {
                 row.extend([String::new(), String::new(), problem.replace(['\n', '\r'], " ")]);
             }
@@ -132,8 +132,9 @@ impl Study {
             .map_err(|error| error.to_string())
     }
 
-    /// Records a patient, in a folder that is removed, fits, and says how far the unseen bout is
-    /// from what the patient does there without noise, root mean square, % of the patient's F0.
+    /// Records a patient in a temporary folder and fits it. Returns the fit and the root mean
+    /// square error of the predicted bout against the patient's force without noise, % of the
+    /// patient's F0.
     fn recover(&self, mut patient: Patient, mode: Mode) -> Result<(Fit, f64), String> {
         let named = &self.start.named;
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
@@ -161,8 +162,7 @@ impl Study {
             let forces = patient.forces(&setting, mode, &bout).map_err(said)?;
             for (index, force) in forces.into_iter().enumerate() {
                 let time = (index * STRIDE) as f64 * super::bout::TICK;
-                // What is predicted is compared with the muscle, not with the noise of its
-                // recording.
+                // The prediction is compared with the force without noise.
                 let force = if bout.role == Role::Fit { patient.reading(force) } else { force };
                 writeln!(text, "{time:.3},{force:.6}").expect("a string grows");
             }

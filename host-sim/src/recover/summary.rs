@@ -1,5 +1,4 @@
-//! How well patients were recovered: medians, 95th percentiles, and how often intervals held the
-//! truth.
+//! Summary of a study: median and 95th percentile of the errors, and coverage of the intervals.
 
 use super::list::{Free, OFFSET, free};
 use super::study::{LEADING, OF_PARAMETER, Study, TRAILING};
@@ -11,52 +10,53 @@ use serde::Serialize;
 
 /// Half of a 95 % interval, in standard errors.
 const NORMAL_95: f64 = 1.96;
-/// Force that is to be predicted so well, % of F0 root mean square.
+/// Limit of the root mean square error of predicted force, % of F0.
 pub const PREDICTED: f64 = 2.0;
 
-/// A parameter of all patients of a mode.
+/// Errors of a parameter over all patients of a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Recovered {
-    /// Its name.
+    /// Name.
     pub parameter: String,
-    /// Spread that patients were drawn with, in % as the errors.
+    /// Spread of the patients, % of the mean.
     pub spread_pct: f64,
-    /// Median of the absolute error, % of the mean; of the path's offset, % of the mean's L_ce0.
+    /// Median of the absolute error, % of the mean; for the path offset, % of the mean L_ce0.
     pub median_error_pct: f64,
-    /// Its 95th percentile.
+    /// 95th percentile of the same.
     pub p95_error_pct: f64,
-    /// How many 95 % intervals hold the truth.
+    /// Number of 95 % intervals that contain the true value.
     pub covered: usize,
-    /// Of how many: none where the fit ended at a bound.
+    /// Number of intervals; a fit that ended at a bound has none.
     pub intervals: usize,
 }
 
-/// All patients of a mode.
+/// Summary of a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// The mode.
     pub mode: &'static str,
-    /// How many there are.
+    /// Number of patients.
     pub patients: usize,
-    /// How many fits were refused or failed.
+    /// Number of fits that were refused or failed.
     pub failed: usize,
-    /// Median of the error of force predicted in the unseen bout, % of F0 root mean square.
+    /// Median of the root mean square error of force in the predicted bout, % of F0.
     pub median_predicted_rms_pct_f0: f64,
-    /// Its 95th percentile.
+    /// 95th percentile of the same.
     pub p95_predicted_rms_pct_f0: f64,
-    /// How many are predicted to 2 % of F0.
+    /// Number of patients predicted within 2 % of F0.
     pub predicted_to_2_pct: usize,
-    /// Parameter by parameter.
+    /// Errors by parameter.
     pub parameters: Vec<Recovered>,
 }
 
 impl Summary {
-    /// Whether 95 of 100 are predicted to 2 % of F0; a fit that failed predicts nothing.
+    /// Whether at least 95 % of the patients are predicted within 2 % of F0; failed fits count as
+    /// not predicted.
     pub fn predicts(&self) -> bool {
         self.predicted_to_2_pct * 100 >= self.patients * 95
     }
 
-    /// How many of all intervals hold the truth, %.
+    /// Coverage of all intervals, %.
     pub fn coverage_pct(&self) -> f64 {
         let covered: usize = self.parameters.iter().map(|p| p.covered).sum();
         let intervals: usize = self.parameters.iter().map(|p| p.intervals).sum();
@@ -64,7 +64,7 @@ impl Summary {
     }
 }
 
-/// One summary per mode of a study whose table is complete.
+/// Summaries per mode of a complete table.
 pub fn summaries(study: &Study, ledger: &Ledger) -> Vec<Summary> {
     study.modes.iter().map(|&mode| summary(study, ledger, mode)).collect()
 }
@@ -130,14 +130,14 @@ fn recovered<'a>(
     }
 }
 
-/// The least value that a share of the sorted values do not exceed; not a number where there are
-/// none.
+/// Quantile of sorted values: the least one that is not exceeded by a share of them; NaN if there
+/// are none.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let place = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(place.max(1) - 1).copied().unwrap_or(f64::NAN)
 }
 
-/// Tables of all modes, and what they come to.
+/// Tables and conclusions of all modes.
 pub fn text(summaries: &[Summary]) -> String {
     let one = |summary: &Summary| {
         format!(
@@ -184,7 +184,7 @@ mod tests {
     use super::percentile;
 
     #[test]
-    fn percentiles_are_values_that_are_there() {
+    fn quantiles_are_existing_values() {
         let hundred: Vec<f64> = (1..=100).map(f64::from).collect();
         assert_eq!(percentile(&hundred, 0.5), 50.0);
         assert_eq!(percentile(&hundred, 0.95), 95.0);
