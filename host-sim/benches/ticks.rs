@@ -1,5 +1,5 @@
-//! Ticks per second of one core of this machine: `cargo bench`. Machines differ, and are noisy:
-//! only what one run says of one arithmetic relative to another counts.
+//! Ticks per second on one core of this machine: `cargo bench`. Only ratios between arithmetics in
+//! one run are meaningful.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use host_sim::model_muscle;
@@ -12,7 +12,7 @@ const FIBER_TYPES: usize = 2;
 const MUSCLES: usize = 8;
 const PATH: f64 = 0.16;
 
-/// Activation goes up and down, so that no tick is like the one before.
+/// Activation varies, so that consecutive ticks differ.
 fn activation(tick: u32) -> f64 {
     f64::from(tick % 1000) / 1000.0
 }

@@ -125,7 +125,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// From the least to the greatest of some values.
+    /// An axis over the range of some values.
     fn exact(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
         let finite = values.filter(|value| value.is_finite());
         let (least, most) =
@@ -133,8 +133,8 @@ impl Axis {
         if least > most {
             return Self { least: 0.0, most: 1.0, start, end };
         }
-        // What differs by rounding alone is a constant: a tenth of it around it, or one unit around
-        // 0, so that its labels are short.
+        // Values that differ by rounding only count as constant: their axis spans a tenth of the
+        // value on both sides, or one unit around 0, for short labels.
         if most - least <= 1e-6 * most.abs() {
             let around = if most == 0.0 { 1.0 } else { 0.1 * most.abs() };
             return Self { least: least - around, most: most + around, start, end };
@@ -342,9 +342,9 @@ mod tests {
         assert_eq!(thinned(&points[..100]), points[..100]);
     }
 
-    /// The path of a scenario that holds it: 16.00000 and 16.00001 would say nothing.
+    /// As the path of an isometric scenario: labels 16.00000 and 16.00001 would be useless.
     #[test]
-    fn a_constant_has_short_labels_around_it() {
+    fn the_axis_of_a_constant_has_short_labels() {
         for (value, count) in [(16.0, 3.0), (16.000_000_1, 6.0), (0.0, 3.0), (-0.25, 3.0)] {
             let axis = Axis::padded([value, value].into_iter(), 100.0, 0.0);
             let (ticks, digits) = axis.ticks(count);
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_are_escaped_and_what_is_not_finite_is_a_gap() {
+    fn labels_are_escaped_and_non_finite_values_are_gaps() {
         let points = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0)];
         let panels = vec![Panel::new(
             "force (N)",

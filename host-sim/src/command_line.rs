@@ -129,7 +129,7 @@ enum ModeName {
     Fes,
     /// Natural discrete recruitment of motor units; the muscle file gives `units`.
     Discrete,
-    /// The same with an effective length of each unit (VM 3.x).
+    /// The same with the effective length of each unit (VM 3.x).
     DiscreteLeff,
 }
 

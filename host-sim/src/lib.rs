@@ -1,4 +1,4 @@
-//! Host side of the muscle model: the independent reference, and the proof of accuracy.
+//! Host side of the muscle model: the independent reference, verification and tools.
 
 pub mod arm;
 pub mod chart;

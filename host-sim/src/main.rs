@@ -1,4 +1,4 @@
-//! `vm`: runs muscles, and proves the accuracy of `vm-nostd`.
+//! The program `vm`.
 
 use std::process::ExitCode;
 

@@ -54,7 +54,7 @@ const KNOWN: [Known; 2] = [
 /// Averaging time of forces, s.
 const AVERAGED: f64 = 0.3;
 
-/// Files of a folder that brings its own definition.
+/// Files of a set with its own definition.
 const MUSCLE_FILE: &str = "muscle.toml";
 const TRIALS_FILE: &str = "trials.toml";
 
@@ -152,7 +152,7 @@ pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<B
                 continue;
             }
         };
-        // The measured F0, not the fitted one.
+        // Relative to the measured F0, not the fitted one.
         let f0 = set.start.named.muscle.f0();
         let scale = fit.muscle.f0() / f0;
         board.rows.extend(fit.trials.iter().map(|trial| Row {
@@ -211,7 +211,7 @@ impl Found {
     /// Fits the complete model.
     fn fitted(&self, search: &Search) -> Result<Fit, FitError> {
         let Start { named, keep_force, .. } = &self.start;
-        // Not in the reference: it takes longer for these small muscles than the fit.
+        // Without the reference, which takes longer than the fit for these small muscles.
         let confirm = [Arithmetic::F32, Arithmetic::Fixed];
         fit(named, *keep_force, self.trials.clone(), search, &confirm)
     }

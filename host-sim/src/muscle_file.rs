@@ -118,9 +118,9 @@ pub struct NamedMuscle {
     pub name: String,
     /// The muscle, its fibre types in order of rank.
     pub muscle: Muscle,
-    /// Accuracy class, standard if the file does not say.
+    /// Accuracy class; standard if the file has none.
     pub class: Class,
-    /// How it answers to the pulses of its electrode, if the file says.
+    /// Recruitment curve, if the file has one.
     pub curve: Option<RecruitmentCurveParams>,
 }
 
@@ -212,7 +212,7 @@ pub fn parse(text: &str, path: &Path) -> Result<NamedMuscle, MuscleFileError> {
     Ok(NamedMuscle { name: file.name, muscle, class, curve })
 }
 
-/// The accuracy class of a name.
+/// Looks up an accuracy class by name.
 fn class(name: &str) -> Result<Class, Refusal> {
     Class::ALL.into_iter().find(|class| class.name() == name).ok_or_else(|| {
         let names = Class::ALL.map(Class::name).join(", ");

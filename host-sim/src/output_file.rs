@@ -28,7 +28,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
         Err(error) => return Err(error),
     };
     let mut builder = tempfile::Builder::new();
-    // Private to the writer until it has the permissions of the file it replaces.
+    // Not readable by others until it has the permissions of the file it replaces.
     #[cfg(unix)]
     if there.is_none() {
         use std::os::unix::fs::PermissionsExt;
@@ -48,7 +48,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// The result of writing to a pipe: that its reader has gone is no error.
+/// Turns the error of a closed pipe into success.
 pub fn unless_broken(result: Result<()>) -> Result<()> {
     result.or_else(|error| match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
@@ -56,8 +56,7 @@ pub fn unless_broken(result: Result<()>) -> Result<()> {
     })
 }
 
-/// A folder that is removed with all that is in it. An error names the folder that it was to be in,
-/// not its random name.
+/// A temporary folder, removed when dropped. An error names its parent, not its random name.
 pub fn temporary_folder() -> Result<TempDir> {
     tempfile::tempdir().map_err(|error| {
         let kind = error.kind();
@@ -65,13 +64,13 @@ pub fn temporary_folder() -> Result<TempDir> {
     })
 }
 
-/// The folder that a file is in.
+/// The folder of a file.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Target of symbolic links, existing or not; none if only the system can follow them, as to a
-/// pipe.
+/// Target of symbolic links, existing or not; `None` if only the system can follow them, such as
+/// links to a pipe.
 fn followed(path: &Path) -> Result<Option<PathBuf>> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {

@@ -1,24 +1,24 @@
-//! When, from what and on what a page was made.
+//! Provenance of a page: date, version, commit and machine.
 
 use crate::target;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Date, version, commit and machine, as a sentence says them.
+/// Date, version, commit and machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Provenance {
     /// Date and time, UTC.
     pub date: String,
     /// Version of this package.
     pub version: &'static str,
-    /// Commit of the repository, and whether files differ from it.
+    /// Commit of the repository, and whether there are uncommitted changes.
     pub commit: String,
     /// Architecture, system, processor and number of its cores.
     pub machine: String,
 }
 
 impl Provenance {
-    /// Of here and now.
+    /// The current provenance.
     pub fn now() -> Self {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
         Self {
@@ -50,7 +50,7 @@ fn date(seconds: u64) -> String {
     format!("{year}-{:02}-{:02} {hour:02}:{minute:02} UTC", month + 1, days + 1)
 }
 
-/// The commit that the repository is at; none where git or the repository is missing.
+/// The current commit; `None` without git or repository.
 fn commit() -> Option<String> {
     let git = |arguments: &[&str]| {
         let output =
@@ -65,7 +65,7 @@ fn commit() -> Option<String> {
 fn machine() -> String {
     let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    // Linux says it here; elsewhere the architecture has to do.
+    // Linux names the processor here; elsewhere only the architecture is known.
     let processor = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let line = text.lines().find(|line| line.starts_with("model name"))?;
         Some(line.split_once(':')?.1.trim().to_owned())
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seconds_are_dates() {
+    fn seconds_are_converted_to_dates() {
         assert_eq!(date(0), "1970-01-01 00:00 UTC");
         assert_eq!(date(951_782_399), "2000-02-28 23:59 UTC");
         assert_eq!(date(951_782_400), "2000-02-29 00:00 UTC");

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 /// An emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// QEMU's name of the machine.
+    /// QEMU machine name.
     pub machine: &'static str,
     /// The target triple of its core.
     pub triple: &'static str,
@@ -63,7 +63,7 @@ pub fn root() -> PathBuf {
 
 /// Adds the target's library with rustup; an error if that fails and it is missing.
 fn ensure_library(triple: &'static str) -> Result<(), TargetError> {
-    // Without rustup the library may still be there.
+    // Without rustup the library may be installed in another way.
     let added = Command::new("rustup").args(["target", "add", triple]).current_dir(root()).output();
     let folder = Command::new("rustc")
         .args(["--print", "target-libdir", "--target", triple])
@@ -98,7 +98,7 @@ pub fn build(
         .args(["--target", triple, "--bin", program, "--target-dir"])
         .arg(&folder)
         .envs(variables.iter().copied())
-        // Built in increments, less is inlined: cycles would depend on the caller's environment.
+        // Incremental builds inline less: cycles would depend on the caller's environment.
         .env("CARGO_INCREMENTAL", "0")
         .current_dir(root())
         .output()

@@ -2,7 +2,7 @@
 
 use crate::real::Real;
 
-/// What drives the muscle during a tick.
+/// Drive of the muscle during a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive<R> {
     /// Natural continuous recruitment at an activation, 0..1.
@@ -75,16 +75,16 @@ fn force_velocity<R: Real>(fast: bool, length: R, v: R) -> R {
     (b - a * v) / (b + v)
 }
 
-/// Af at a frequency that yield or sag has scaled.
+/// Af at a frequency scaled by yield or sag.
 fn activation_frequency<R: Real>(fast: bool, length: R, frequency: R) -> R {
     let slope = R::of(if fast { 3.3 } else { 5.0 });
     let n_f = R::of(2.1) + slope * (R::of(1.0) / length - R::of(1.0));
-    // A stage may overshoot to a hair below 0.
+    // A Runge-Kutta stage may overshoot slightly below 0.
     let x = max(frequency, R::of(0.0)) / (R::of(0.56) * n_f);
     R::of(1.0) - (-x.pow(n_f)).exp()
 }
 
-/// What a drive means for a tick.
+/// Inputs of the equations during a tick.
 pub struct Excitation<R> {
     fes: bool,
     activation: R,
@@ -93,7 +93,7 @@ pub struct Excitation<R> {
 }
 
 impl<R: Real> Excitation<R> {
-    /// Of a drive.
+    /// The inputs of a drive.
     pub fn of(drive: Drive<R>) -> Self {
         let recruited = |activation: R, threshold: R| {
             let share = (activation - threshold) / (R::of(1.0) - threshold);
@@ -126,7 +126,7 @@ pub fn rates<R: Real>(excitation: &Excitation<R>, y: &[R; STATES], path: R) -> [
         let index = usize::from(fast);
         let (f_int, f_eff) = (y[3 + index], y[5 + index]);
         let f_env = excitation.frequency[index];
-        // What drives the two lags, and what saturates with frequency.
+        // Input of the two lags, and frequency for Af.
         let (drive, frequency) =
             if excitation.fes { (excitation.activation, f_env) } else { (f_env, f_eff) };
         let scale = if fast { sag } else { yielding };
@@ -173,7 +173,7 @@ pub fn rates<R: Real>(excitation: &Excitation<R>, y: &[R; STATES], path: R) -> [
     rates
 }
 
-/// Rest on a path (m): the passive forces balance, found by bisection.
+/// Rest on a path (m): equilibrium of the passive forces by bisection.
 pub fn rest<R: Real>(path: R) -> [R; STATES] {
     let zero = R::of(0.0);
     let (mut short, mut long) = (R::of(0.4), path / R::of(L_CE0));

@@ -1,13 +1,13 @@
-//! The functions of libm that one evaluation of the right-hand side calls, and nothing else.
+//! The libm calls of one evaluation of the right-hand side.
 
 use crate::real::Real;
 
 /// Two softplus, the compression, two force-length and two activation-frequency relations and the
-/// yield: 8 exponentials, 2 logarithms and 6 powers, at arguments as they are met for a fascicle
-/// `length` (L_ce0), a `frequency` (f0.5) and a speed (L_ce0/s). The sum of the results keeps
-/// every call alive.
+/// yield: 8 exponentials, 2 logarithms and 6 powers, with typical arguments for a fascicle `length`
+/// (L_ce0), a `frequency` (f0.5) and a speed (L_ce0/s). The sum of the results keeps every call
+/// from being optimised away.
 ///
-/// What a tick costs at least that evaluates the paper's equations with libm a single time.
+/// A lower bound for the cost of a tick that evaluates the paper's equations with libm once.
 pub fn kernels_of_one_evaluation<R: Real>(length: R, frequency: R, speed: R) -> R {
     let one = R::of(1.0);
     let mut sum = (length.exp() + one).ln() + (frequency.exp() + one).ln();

@@ -1,9 +1,9 @@
-//! The baseline: Virtual Muscle as an engineer would port it first. The paper's equations line by
-//! line, its validation muscle, libm, and the classical Runge-Kutta method at a fixed step that is
-//! short enough to stay stable. What `vm-nostd` saves is measured against this.
+//! The baseline for cycles: a direct port of Virtual Muscle. The paper's equations line by line,
+//! its validation muscle, libm, and the classical Runge-Kutta method at the longest stable fixed
+//! step.
 //!
-//! It shares no code with the model or the reference, checks no input, and is competent: nothing
-//! is computed twice, powers and exponentials are libm's single-precision ones in `f32`.
+//! It shares no code with the model or the reference and checks no input. It is a fair baseline:
+//! nothing is computed twice, and `f32` uses libm's single-precision functions.
 #![no_std]
 
 mod equations;
@@ -18,12 +18,12 @@ pub use real::Real;
 /// F0 of the muscle, N: 31.8 N/cm² × 97.5 g/(1.06 g/cm³ × 11 cm).
 const F0: f64 = 31.8 * 97.5 / (1.06 * 11.0);
 
-/// Runge-Kutta steps per millisecond at which the port is stable: the fewest at which its scheme,
-/// in double precision, errs by at most 0.1 % of F0 on smooth and sudden inputs alike. With fewer
-/// it chatters about the kink of the force-velocity relation.
+/// Runge-Kutta steps per millisecond: the fewest with an error of at most 0.1 % of F0 in double
+/// precision on smooth and sudden inputs. With fewer the scheme chatters about the kink of the
+/// force-velocity relation.
 pub const STABLE_STEPS: u32 = 31;
 
-/// A muscle and where it is.
+/// A muscle with its state.
 #[derive(Clone, Debug)]
 pub struct LiteralMuscle<R> {
     /// Runge-Kutta steps per tick.
@@ -36,7 +36,7 @@ pub struct LiteralMuscle<R> {
 }
 
 impl<R: Real> LiteralMuscle<R> {
-    /// The muscle at rest on a path (m), to be ticked every millisecond in so many steps.
+    /// The muscle at rest on a path (m), with a number of steps per tick of 1 ms.
     pub fn at_rest(path_length: R, steps: u32) -> Self {
         let step = R::of(1e-3) / R::of(f64::from(steps));
         Self { steps, step, state: rest(path_length), path_length }
@@ -47,7 +47,7 @@ impl<R: Real> LiteralMuscle<R> {
         R::of(F0) * tendon_force(self.path_length, self.state[0])
     }
 
-    /// Ticks one millisecond, to a path length (m), and returns the tendon force, N.
+    /// Steps one millisecond to a path length (m) and returns the tendon force, N.
     pub fn tick(&mut self, drive: Drive<R>, path_length: R) -> R {
         let excitation = Excitation::of(drive);
         let slope = (path_length - self.path_length) / R::of(1e-3);

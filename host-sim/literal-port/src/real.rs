@@ -1,4 +1,4 @@
-//! What the port is computed in: single or double precision, with libm's functions.
+//! Arithmetic of the port: single or double precision, with libm's functions.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 

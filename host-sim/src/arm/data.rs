@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn flexors_flex_and_extensors_extend_what_they_cross() {
+    fn moment_arms_have_the_sign_of_their_group() {
         let arm = Arm::built_in();
         for ArmMuscle { name, group, path, .. } in &arm.muscles {
             for angles in [arm.least_angles, [0.8, 1.6], arm.greatest_angles] {
@@ -195,7 +195,7 @@ mod tests {
     /// The longest path against a search over all angles, the moment arms against finite
     /// differences.
     #[test]
-    fn paths_and_moment_arms_belong_together() {
+    fn paths_and_moment_arms_are_consistent() {
         let arm = Arm::built_in();
         let steps = 200;
         for ArmMuscle { name, path, muscle, .. } in &arm.muscles {

@@ -23,7 +23,7 @@ pub struct Outcome {
     pub final_angles: Joints,
     /// Early and late amplitudes; none if the run is too short.
     pub swings: Option<Swings>,
-    /// Period with which the elbow swings in the second half of the run, s; none where it does not.
+    /// Period of the elbow's oscillation in the second half of the run, s; `None` if there is none.
     pub period: Option<f64>,
     /// An angle left the range of its joint, where paths may be clipped.
     pub out_of_range: bool,
@@ -114,9 +114,8 @@ fn swings(moments: &[Moment], time_step: f64) -> Option<Swings> {
     Some(Swings { early: largest(early), late: largest(late), half })
 }
 
-/// The median time between the moments at which a joint goes up through the middle of its swing, s;
-/// none if there are not two of them, or the joint is at rest. The median, because now and then a
-/// swing is left out.
+/// Period of an oscillation, s: median time between upward crossings of its middle; `None` with
+/// fewer than two crossings or at rest. The median is robust against single missing cycles.
 fn period(moments: &[Moment], joint: usize) -> Option<f64> {
     let angle = |moment: &Moment| moment.angles[joint].to_degrees();
     let (least, most) = moments
@@ -124,7 +123,8 @@ fn period(moments: &[Moment], joint: usize) -> Option<f64> {
         .map(angle)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), angle| (a.min(angle), b.max(angle)));
     let (low, high) = (least + 0.25 * (most - least), least + 0.75 * (most - least));
-    // Counted once it was low again: small swings about the middle are no period.
+    // A crossing counts only after the angle was low again: small oscillations about the middle are
+    // ignored.
     let mut was_low = false;
     let mut ups = Vec::new();
     for moment in moments {
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_is_that_of_whole_swings() {
+    fn the_period_is_that_of_whole_cycles() {
         let run = |elbow: &dyn Fn(f64) -> f64| -> Option<f64> {
             let moments: Vec<Moment> =
                 (0..=3000).map(|tick| moment(f64::from(tick) * 0.01, elbow)).collect();
@@ -184,10 +184,10 @@ mod tests {
         };
         let found = run(&|t| (t * std::f64::consts::TAU / 2.4).sin()).expect("a period");
         assert!((found - 2.4).abs() < 0.01, "{found}");
-        // With a small faster swing on top, it is the same.
+        // A small, faster oscillation on top has no effect.
         let found = run(&|t| (t * std::f64::consts::TAU / 2.4).sin() + 0.1 * (20.0 * t).sin());
         assert!((found.expect("a period") - 2.4).abs() < 0.03, "{found:?}");
-        // One that is left out now and then is none of it.
+        // Single missing cycles have no effect.
         let found = run(&|t| {
             let resting = (12.0..14.4).contains(&t);
             if resting { -1.0 } else { -(t * std::f64::consts::TAU / 2.4).cos() }
@@ -198,13 +198,13 @@ mod tests {
     }
 
     #[test]
-    fn swings_that_die_out_settle_and_others_do_not() {
+    fn decaying_oscillations_settle_and_others_do_not() {
         let dying = judged(|t| 10.0 * (-0.6 * t).exp());
         assert!(dying.settle());
         assert!((dying.growth()[1] + 0.6).abs() < 0.01, "{:?}", dying.growth());
         let growing = judged(|t| (0.5 * t).exp() * (6.0 * t).sin());
         assert!(!growing.settle() && growing.growth()[1] > 0.4, "{:?}", growing.growth());
-        assert!(!judged(|t| (6.0 * t).sin()).settle(), "it goes on");
+        assert!(!judged(|t| (6.0 * t).sin()).settle(), "a sustained oscillation");
         assert!(!judged(|t| if t > 4.0 { t } else { 0.0 }).settle(), "a burst");
         assert!(judged(|t| 4e-3 * (6.0 * t).sin()).settle(), "at rest, whatever rounding does");
         assert!(!judged(|t| if t > 4.0 { f64::NAN } else { 0.0 }).settle(), "not a number");

@@ -31,7 +31,7 @@ impl Activations {
 /// Inputs of an arm run.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
-    /// How the muscles are recruited.
+    /// Recruitment mode.
     pub mode: Mode,
     /// Arithmetic.
     pub arithmetic: Arithmetic,
@@ -184,13 +184,13 @@ impl<'a> Simulation<'a> {
     /// oscillations.
     fn step(&mut self) -> Result<(), ArmError> {
         let now = &self.now;
-        let foreseen: Vec<f64> = now
+        let predicted: Vec<f64> = now
             .forces
             .iter()
             .zip(&self.forces_before)
             .map(|(now, before)| 2.0 * now - before)
             .collect();
-        let state = self.moved(&foreseen);
+        let state = self.moved(&predicted);
         let mut forked: Vec<_> = self.running.iter().map(|running| running.fork()).collect();
         let (forces, ..) = self.pull(&mut forked, &state)?;
 

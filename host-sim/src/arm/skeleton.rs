@@ -1,4 +1,4 @@
-//! Two segments in a horizontal plane, one joint behind the other.
+//! Two segments in a horizontal plane, connected by joints in series.
 //!
 //! `M(q) q'' + C(q, q') = torque`, with the inertia of each segment about the joint above it:
 //!
@@ -92,7 +92,7 @@ mod tests {
         }
     }
 
-    /// The kinetic energy, written from the velocities of the centres instead of from M.
+    /// Kinetic energy computed from the velocities of the centres of mass instead of M.
     #[test]
     fn energy_is_that_of_the_segments() {
         let skeleton = Arm::built_in().skeleton;
@@ -111,9 +111,9 @@ mod tests {
         assert!((found - expected).abs() < 1e-12 * expected, "{found} J, not {expected} J");
     }
 
-    /// Without torques energy is conserved: M and C are consistent.
+    /// M and C are consistent.
     #[test]
-    fn power_of_the_torques_is_the_change_of_energy() {
+    fn the_change_of_kinetic_energy_is_the_power_of_the_torques() {
         let skeleton = Arm::built_in().skeleton;
         let (angles, velocities, torques) = ([0.7, 1.3], [2.0, -3.5], [1.7, -0.6]);
         let acceleration = skeleton.acceleration(angles, velocities, torques);

@@ -13,17 +13,17 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// `vm cycles`: a table of all cases, or a closer look at one function.
+/// `vm cycles`: a table of all cases, or the profile of one function.
 #[derive(Debug, Args)]
 pub struct CyclesArgs {
     /// Print the rows as a JSON array instead of a table.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     json: bool,
-    /// Fail where a budget of data/budgets.toml is exceeded or stale, or the README's tables are
-    /// not what is measured.
+    /// Fail if a budget of data/budgets.toml is exceeded or stale, or if the tables of
+    /// docs/cycles.md or data/computation.csv have drifted.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     check: bool,
-    /// Write the README's tables, and figure 7's data/computation.csv.
+    /// Write the tables of docs/cycles.md, and data/computation.csv for figure 7.
     #[arg(long, conflicts_with_all = ["case", "elf", "check"])]
     write: bool,
     /// Share of the core's time that muscles may take, 0.01 to 1.
@@ -41,7 +41,7 @@ pub struct CyclesArgs {
     /// Profile a function of another Cortex-M program.
     #[arg(long, requires = "symbol", value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// Function: its name (or what follows the last `::` of it), its mangled symbol, or its address
+    /// Function: its name (or the part after the last `::`), its mangled symbol, or its address
     /// (0x08000150).
     #[arg(long, requires = "elf", value_name = "NAME")]
     symbol: Option<String>,
@@ -50,11 +50,10 @@ pub struct CyclesArgs {
     #[arg(long, requires = "elf", num_args = 0.., allow_negative_numbers = true,
           value_name = "ARGS")]
     entry: Option<Vec<Argument>>,
-    /// QEMU machine that the program is for.
+    /// QEMU machine of the program.
     #[arg(long, requires = "elf", default_value = cycles::MACHINE)]
     machine: String,
-    /// Time limit of the program, s: it is stopped then, and the calls that have returned are
-    /// counted.
+    /// Timeout of the program, s: it is stopped then, and the calls that have returned are counted.
     #[arg(long, requires = "elf", default_value_t = 60, value_name = "SECONDS",
           value_parser = clap::value_parser!(u32).range(1..=86_400))]
     timeout: u32,
@@ -65,7 +64,7 @@ pub struct CyclesArgs {
     /// the economy class on a Cortex-M0+.
     #[arg(long, value_enum, conflicts_with_all = ["check", "write", "elf"])]
     class: Option<Class>,
-    /// Source of the executed addresses.
+    /// Source of the trace.
     #[arg(long, value_enum, default_value_t = Tracer::Auto)]
     tracer: Tracer,
 }
@@ -212,7 +211,7 @@ fn table(rows: &[Row]) -> Table {
     table
 }
 
-/// How many muscles a core steps.
+/// Number of muscles that a core steps.
 fn muscles(rows: &[Row], share: f64) -> String {
     let clocks = CLOCKS.map(|clock| format!("{clock} MHz"));
     let title = format!("muscles at 1 kHz in {:.0} % of a core of", share * 100.0);
@@ -224,7 +223,7 @@ fn muscles(rows: &[Row], share: f64) -> String {
         let name = format!("{} on {}", row.case, row.target.name());
         table.add_row([vec![name], counts.to_vec()].concat());
     }
-    format!("\n{table}\n(pess max x {MARGIN}, on a core that waits for no memory)")
+    format!("\n{table}\n(pess max x {MARGIN}, without flash wait states)")
 }
 
 fn calls(profile: &Profile) -> String {

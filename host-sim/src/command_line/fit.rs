@@ -48,7 +48,7 @@ impl SearchArgs {
 }
 
 pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
-    // Before all is fitted, and not after.
+    // Check the paths before the fit, which takes minutes.
     for (option, output) in [("--out", Some(&args.out)), ("--report", args.report.as_ref())] {
         let Some(output) = output else { continue };
         trace::check_folder(output)?;

@@ -1,4 +1,4 @@
-//! `vm hil`: a trace played to a muscle on a device, and its bits against the host's.
+//! `vm hil`: plays a trace to a muscle on a device and compares its bits with the host's.
 
 use super::print;
 use super::run::check_run;
@@ -87,7 +87,7 @@ pub fn run(args: &HilArgs) -> Result<(), Box<dyn Error>> {
         report.frames.refused,
     );
     if args.output == Path::new(STANDARD) {
-        // Where the outputs are on standard output, nothing else is.
+        // Nothing else is printed if the outputs go to standard output.
         let _nobody_listens = writeln!(std::io::stderr(), "{told}");
     } else {
         print(&told)?;

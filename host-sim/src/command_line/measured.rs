@@ -1,4 +1,4 @@
-//! `vm measured`: the model held against real muscle.
+//! `vm measured`: the model compared with recordings of real muscle.
 
 use super::fit::SearchArgs;
 use super::{complain, print};
@@ -57,7 +57,7 @@ pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
     Ok(board.skipped.is_empty() || args.allow_missing)
 }
 
-/// The scoreboard, what was fitted, and what the model cannot.
+/// Errors of all trials and sets, fitted parameters, residual force enhancement and refusals.
 fn text(board: &Board, left_out: &[LeftOut]) -> String {
     let mut text = format!("{}\n\n{}\n\n", trials(board), means(board, left_out));
     for (set, _, fit) in board.fits.iter().filter(|fit| fit.1 == LeftOut::Nothing.name()) {

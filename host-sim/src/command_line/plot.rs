@@ -48,7 +48,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The inputs over time, each with what it is.
+/// The inputs over time, with their labels.
 fn input_lines(trace: &InputTrace) -> [(&'static str, Vec<Point>); 3] {
     let points = |value: fn(&crate::reference::Input) -> f64| {
         trace

@@ -31,48 +31,46 @@ impl From<RecordedMode> for Mode {
 
 #[derive(Debug, Args)]
 pub struct ProtocolArgs {
-    /// The muscle that is expected, in TOML, or its name in `vm muscles`; without it, the one of
-    /// `vm recover`.
+    /// Expected muscle, in TOML, or a name of `vm muscles`. Default: that of `vm recover`.
     #[arg(long)]
     muscle: Option<PathBuf>,
-    /// How it is recruited.
+    /// Recruitment mode.
     #[arg(long, value_enum)]
     mode: RecordedMode,
-    /// The folder of the inputs and of trials.toml; made if it is not there.
+    /// Folder for the inputs and trials.toml; created if missing.
     #[arg(long)]
     out: PathBuf,
 }
 
 #[derive(Debug, Args)]
 pub struct RecoverArgs {
-    /// The mean of the patients, in TOML, or its name in `vm muscles`.
+    /// Mean of the patients, in TOML, or a name of `vm muscles`.
     #[arg(long)]
     muscle: Option<PathBuf>,
-    /// How many patients of each mode.
+    /// Number of patients per mode.
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     patients: u16,
-    /// How they are recruited.
+    /// Recruitment modes.
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["fes", "continuous"])]
     modes: Vec<RecordedMode>,
-    /// Where their rows go, in CSV. If there are some already, of the same patients, it goes on
-    /// with the others.
+    /// Output table, in CSV; an incomplete table of the same study is resumed.
     #[arg(long)]
     output: PathBuf,
     /// Print the summary as JSON instead of tables.
     #[arg(long)]
     json: bool,
-    /// Write the tables into docs/fitting.md.
+    /// Write the tables to docs/fitting.md.
     #[arg(long)]
     write: bool,
-    /// How many starts each fit has.
+    /// Number of starts per fit.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// What patients, noise and starts are drawn from.
+    /// Random seed of patients, noise and starts.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
 
-/// The muscle that is named, or the one that is built in.
+/// The given muscle or the built-in one.
 fn muscle(path: Option<&Path>) -> Result<Start, Box<dyn Error>> {
     Ok(match path {
         Some(path) => Start::read(path)?,
@@ -89,7 +87,7 @@ pub fn protocol(args: &ProtocolArgs) -> Result<(), Box<dyn Error>> {
     let bouts = recover::bouts(mode, start.named.muscle.fatigue.is_some());
     let all: f64 = bouts.iter().map(|bout| bout.seconds).sum();
     let driven = recover::stimulated(&bouts);
-    print(&format!("{} recordings, {all:.1} s, driven for {driven:.1} s", bouts.len()))?;
+    print(&format!("{} recordings, {all:.1} s, active for {driven:.1} s", bouts.len()))?;
     Ok(())
 }
 
@@ -100,12 +98,12 @@ struct Recovery<'a> {
     modes: &'a [Summary],
 }
 
-/// Recovers patients; true if force is predicted as well as it is meant to be.
+/// Recovers patients; true if enough forces are predicted within the limit.
 pub fn recover(args: &RecoverArgs) -> Result<bool, Box<dyn Error>> {
     let start = muscle(args.muscle.as_deref())?;
     let twice = |index: &usize| args.modes[..*index].contains(&args.modes[*index]);
     if (1..args.modes.len()).any(|index| twice(&index)) {
-        return Err("--modes: one is given twice".into());
+        return Err("--modes: a mode is given twice".into());
     }
     let search = SearchArgs { starts: args.starts, seed: args.seed }.search();
     let modes = args.modes.iter().map(|&mode| mode.into()).collect();

@@ -84,7 +84,7 @@ fn summary(args: &RunArgs, class: Class, trace: &InputTrace, rows: &[engine::Row
         (_, true) => "no tick flagged".to_owned(),
         (_, false) => format!("flagged: {}", flagged.join(", ")),
     };
-    // The reference has no class, and the standard one goes without saying.
+    // The reference has no class; the standard one is not printed.
     let class = match (args.arithmetic, class) {
         (Arithmetic::Reference, _) | (_, Class::Standard) => String::new(),
         (_, class) => format!(", {} class", class.name()),

@@ -21,7 +21,7 @@ pub struct StackArgs {
     /// Print a JSON object instead of tables.
     #[arg(long)]
     json: bool,
-    /// Also fail if the tables of firmware/README.md differ from what is computed.
+    /// Also fail if the tables of firmware/README.md have drifted.
     #[arg(long)]
     check: bool,
     /// Write the tables of firmware/README.md.

@@ -45,8 +45,7 @@ pub struct SweepArgs {
     replay: Option<PathBuf>,
 }
 
-/// The keys of `--vary`: limits, the value in a grid that does not vary it, and the range it is
-/// drawn from.
+/// The keys of `--vary`: limits, default value in a grid, and default range of random values.
 fn keys() -> String {
     let mut text = String::from("Keys of --vary (limits; in a grid; at random):\n");
     for key in KEYS {
@@ -134,7 +133,7 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Writes a case to files, and says what it comes to.
+/// Writes a case to files, and prints its errors.
 fn replay(sweep: &Sweep, number: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
     let count = sweep.space.count();
     if number >= count {

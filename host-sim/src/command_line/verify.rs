@@ -46,8 +46,7 @@ const MODES: [&str; 3] = ["continuous", "fes", "discrete"];
 const ARITHMETICS: [&str; 2] = ["f32", "fixed"];
 
 /// A heading, and a line per mode and arithmetic: the largest error at ticks of 1 ms with its
-/// limit, whether all comparisons of that mode and arithmetic pass, and the time that computing
-/// them took.
+/// limit, whether all comparisons of that mode and arithmetic pass, and their run time.
 fn summary(report: &Report) -> String {
     let failed = report.rows.iter().filter(|row| !row.pass).count();
     let verdict = if failed == 0 { "all pass".to_owned() } else { format!("{failed} FAIL") };
@@ -140,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_error_at_1_ms_is_named_and_a_failure_at_any_tick_fails_its_line() {
+    fn a_line_names_the_largest_error_at_1_ms_and_fails_with_any_row() {
         let bad = Row { pass: false, ..row("steps@2ms", "fes", "f32", 3.0) };
         let rows = vec![
             row("steps", "fes", "f32", 0.1),

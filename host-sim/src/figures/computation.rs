@@ -1,12 +1,12 @@
-//! Figure 7: what a tick costs by the number of motor units, in cycles of a Cortex-M4F.
+//! Figure 7: cost of a tick by number of motor units, in cycles of a Cortex-M4F.
 //!
-//! They are counted by `vm cycles`, which needs QEMU, and kept in `data/computation.csv`.
+//! `vm cycles`, which needs QEMU, writes them to `data/computation.csv`.
 
 use super::files::{Figures, FiguresError};
 use crate::chart::{Chart, Line, Panel, Point};
 use crate::cycles::UnitCost;
 
-/// The paper's times of discrete 30 + 30 over continuous: in figure 7, and in the abstract.
+/// The paper's ratios of computing time of discrete 30 + 30 to continuous: figure 7 and abstract.
 pub(super) const PRINTED: [f64; 2] = [8.5, 15.0];
 const MOST_UNITS: usize = 30;
 

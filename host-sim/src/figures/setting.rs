@@ -1,4 +1,4 @@
-//! What the figures have in common: muscles, path and time step.
+//! Muscles, path and time step shared by the figures.
 
 use crate::reference::{Mode, Muscle};
 use crate::scenario::{paper_muscle, paper_muscle_of_units};

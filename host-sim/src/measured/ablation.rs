@@ -1,4 +1,4 @@
-//! The fit of a model that a feature is left out of.
+//! Fits the model without a feature.
 
 use super::{Found, LeftOut};
 use crate::engine::Arithmetic;
@@ -57,9 +57,9 @@ impl Found {
             let inside = whole.estimates.iter().filter(|estimate| !estimate.at_bound);
             trials.start_at(inside.map(|estimate| (estimate.name.as_str(), estimate.value)));
         }
-        // The seed draws starts after the first; there are none.
+        // The seed has no effect with one start.
         let search = Search { starts: 1, seed: 0 };
-        // Not in fixed point: an ablated muscle is for this comparison, not for firmware.
+        // Fixed point need not accept an ablated muscle.
         fit(&start, self.start.keep_force, trials, &search, &[Arithmetic::F32])
     }
 

@@ -1,8 +1,8 @@
-//! What is left out of the model, to see what it is worth on real muscle.
+//! Ablations: features left out of the model to measure their benefit on real muscle.
 
 use crate::reference::Muscle;
 
-/// Ablation: a feature of Virtual Muscle that is left out, or none.
+/// An ablation, or the full model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
     /// The full model.
@@ -30,7 +30,7 @@ impl LeftOut {
         }
     }
 
-    /// Takes the feature out of a muscle.
+    /// Removes the feature from a muscle.
     pub(super) fn out_of(self, muscle: &mut Muscle) {
         for fiber in &mut muscle.fibers {
             let t = &mut fiber.fiber_type;

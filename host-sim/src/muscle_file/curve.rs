@@ -1,10 +1,10 @@
-//! The recruitment curve of an electrode, as it stands in a muscle file or a list of trials.
+//! The recruitment curve in a muscle file or a list of trials.
 
 use crate::model_muscle::in_file_unit;
 use serde::Deserialize;
 use vm_nostd::{Limit, RecruitmentCurveParams};
 
-/// What the names of its parameters begin with.
+/// Prefix of the names of its parameters.
 pub const CURVE: &str = "recruitment_curve.";
 
 /// The keys of its table.
@@ -29,7 +29,7 @@ impl CurveTable {
     }
 }
 
-/// What is wrong with a curve, its key and value in the units of the file.
+/// Why a curve is refused: key, value and limit in the units of the file.
 pub fn refusal(curve: &RecruitmentCurveParams) -> Option<(String, String, String)> {
     let error = curve.validate().err()?;
     let at = ["threshold", "saturation", "chronaxie", "slope"];
@@ -52,7 +52,7 @@ pub fn key(name: &str) -> Option<usize> {
     NAMES.iter().position(|known| *known == name)
 }
 
-/// All names, for a message.
+/// All names, for error messages.
 pub fn names() -> String {
     NAMES.join(", ")
 }

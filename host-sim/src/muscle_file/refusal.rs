@@ -1,4 +1,4 @@
-//! Why a key was refused, and what every table has in common.
+//! Refusal of a key, and overriding of coefficients in a table.
 
 use crate::coefficients::Row;
 use std::collections::BTreeMap;

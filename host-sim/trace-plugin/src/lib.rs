@@ -1,6 +1,6 @@
-//! A QEMU plugin that writes what is executed to the Unix socket named by its argument
-//! `socket=PATH`: per block of instructions without a branch inside, the addresses of the first and
-//! of the last, as little-endian 32-bit words.
+//! A QEMU plugin that writes the executed blocks to the Unix socket of its argument `socket=PATH`.
+//! For each block, which has no branch except at its end: the addresses of its first and last
+//! instruction as little-endian 32-bit words.
 //!
 //! The prototypes are those of QEMU's plugin interface, version 1 (QEMU 4.2 and later; headers
 //! are not needed). All state is in one writer behind a lock: an emulated microcontroller has a
@@ -45,10 +45,10 @@ unsafe extern "C" {
     );
 }
 
-/// How long a block may wait in the buffer.
+/// Longest time that a block stays in the buffer.
 const FLUSH: Duration = Duration::from_millis(100);
 
-/// Where addresses go.
+/// Writer of the addresses.
 static OUTLET: Mutex<Option<BufWriter<UnixStream>>> = Mutex::new(None);
 
 /// Called by QEMU when it loads the plugin; anything but 0 refuses.
@@ -81,7 +81,8 @@ pub unsafe extern "C" fn qemu_plugin_install(
     if let Ok(mut outlet) = OUTLET.lock() {
         *outlet = Some(BufWriter::with_capacity(1 << 16, socket));
     }
-    // A program that sleeps fills no buffer, and one that is stopped ends without a last word.
+    // Flush periodically: a sleeping program does not fill the buffer, and a killed one does not
+    // flush it.
     std::thread::spawn(|| {
         loop {
             std::thread::sleep(FLUSH);
@@ -101,8 +102,8 @@ pub unsafe extern "C" fn qemu_plugin_install(
     0
 }
 
-/// Asks for a call whenever a block that QEMU has just translated is entered. Blocks end where the
-/// program may branch, and once entered run to their end.
+/// Registers a callback on entry of a block that QEMU has just translated. Blocks end at branches
+/// and, once entered, run to their end.
 extern "C" fn on_translation(_id: PluginId, block: *mut Block) {
     // SAFETY: `block` and the instructions got from it are valid during this call, and a block
     // has at least one instruction.
@@ -110,7 +111,7 @@ extern "C" fn on_translation(_id: PluginId, block: *mut Block) {
         let address = |index| qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(block, index));
         let count = qemu_plugin_tb_n_insns(block);
         let (first, last) = (address(0), address(count - 1));
-        // Both addresses travel as the callback's data: no allocation, nothing to free.
+        // Both addresses are packed into the callback's data pointer: no allocation.
         let data = (first | last << 32) as usize as *mut c_void;
         qemu_plugin_register_vcpu_tb_exec_cb(block, on_execution, NO_REGISTERS, data);
     }
@@ -125,7 +126,7 @@ extern "C" fn on_execution(_core: c_uint, addresses: *mut c_void) {
         && let Some(writer) = outlet.as_mut()
         && writer.write_all(&words).is_err()
     {
-        // The reader is gone: there is nobody to write to, or to tell.
+        // The reader has closed the socket: nothing to do.
         *outlet = None;
     }
 }

@@ -57,7 +57,11 @@ impl Curves {
             let (mut least, mut most) = (shortest, longest);
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (least + most);
-                if at(1.0, middle).fascicle_length > length { most = middle } else { least = middle }
+                if at(1.0, middle).fascicle_length > length {
+                    most = middle
+                } else {
+                    least = middle
+                }
             }
             least
         };
@@ -65,7 +69,11 @@ impl Curves {
         let (fastest_shortening, fastest_lengthening) = FASTEST;
         let mut speed = fastest_shortening;
         while speed <= fastest_lengthening {
-            velocity.extend(passing(&muscle, path_of(1.0 - speed * LEAD), speed * params.fascicle_length)?);
+            velocity.extend(passing(
+                &muscle,
+                path_of(1.0 - speed * LEAD),
+                speed * params.fascicle_length,
+            )?);
             speed += 0.5;
         }
         velocity.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -81,7 +89,8 @@ fn passing(
     speed: f64,
 ) -> Result<Option<Point>, ParameterError> {
     let mut state = muscle.rest(start)?;
-    let input = |path_length| Input { activation: 1.0, path_length, stimulation_frequency: TETANUS };
+    let input =
+        |path_length| Input { activation: 1.0, path_length, stimulation_frequency: TETANUS };
     let mut before = muscle.observe(&state).fascicle_length;
     for _ in 0..HELD {
         before = muscle.step(&mut state, input(start)).fascicle_length;

@@ -28,8 +28,8 @@ pub fn all(host_sim: &Path) -> Result<Value, Box<dyn Error>> {
 }
 
 fn rows(file: &Path) -> Result<Vec<Row>, Box<dyn Error>> {
-    let mut reader = csv::Reader::from_path(file)
-        .map_err(|error| format!("{}: {error}", file.display()))?;
+    let mut reader =
+        csv::Reader::from_path(file).map_err(|error| format!("{}: {error}", file.display()))?;
     let headers = reader.headers()?.clone();
     reader
         .records()
