@@ -1,8 +1,8 @@
-//! Why a muscle is refused.
+//! Errors of refused parameters.
 
 use core::fmt;
 
-/// A parameter that was refused, with its value and the limit it broke.
+/// A refused parameter with its value and limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
     /// The parameter's field. If a derived quantity is refused, its name follows after a colon, and
@@ -12,7 +12,7 @@ pub struct ParameterError {
     pub fiber: Option<usize>,
     /// The refused value, in the field's unit.
     pub value: f64,
-    /// The limit it broke.
+    /// The violated limit.
     pub limit: Limit,
 }
 
@@ -50,7 +50,7 @@ impl fmt::Display for Limit {
                 write!(f, "the fractions of all types must add to 1 (within {within})")
             }
             Self::NotBefore { rank } => {
-                write!(f, "types are listed in order of rank, and the one before has {rank}")
+                write!(f, "types must be in order of rank: the previous one has {rank}")
             }
             Self::AtLeastOneType => f.write_str("a muscle has at least one fibre type"),
         }
@@ -68,7 +68,7 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Accepts `value` within the bounds; refuses all else, NaN included.
+/// Accepts a value within the bounds; refuses all others, including NaN.
 pub(crate) fn within(
     field: &'static str,
     value: f64,

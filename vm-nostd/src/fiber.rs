@@ -1,4 +1,4 @@
-//! A fibre type of a muscle.
+//! A fibre type of a built muscle.
 
 use crate::checksum::summed;
 use crate::equations::activation_frequency::ActivationFrequency;

@@ -1,7 +1,7 @@
-//! `defmt::Format` of what firmware logs, in SI units whatever the arithmetic.
+//! `defmt::Format` for logging in firmware, in SI units in every arithmetic.
 //!
-//! Numbers are converted to `f64`: in a core without a floating-point unit that takes some hundred
-//! cycles each, so log outside of the tick.
+//! Numbers are converted to `f64`: on a core without a floating-point unit that takes some
+//! hundred cycles per number, so log outside the tick.
 
 use crate::error::{Limit, ParameterError};
 use crate::io::{Input, Output};
@@ -35,7 +35,7 @@ impl Format for Limit {
                 write!(f, "the fractions of all types must add to 1 (within {=f64})", within);
             }
             Self::NotBefore { rank } => {
-                write!(f, "types are listed in order of rank, and the one before has {=f64}", rank)
+                write!(f, "types must be in order of rank: the previous one has {=f64}", rank)
             }
             Self::AtLeastOneType => write!(f, "a muscle has at least one fibre type"),
         }

@@ -1,4 +1,4 @@
-//! What the equations of a tick are made of.
+//! Building blocks of a tick: inputs, ranges, lags and the time step.
 
 pub(crate) mod admission;
 pub(crate) mod course;

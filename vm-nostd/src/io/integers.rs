@@ -14,7 +14,7 @@ impl Input<Fixed> {
     /// in tenths of a pulse per second.
     ///
     /// Path lengths are exact; thousandths and tenths are rounded to nearest. Values outside the
-    /// muscle's domain are clipped and flagged by the tick, like any input; a path beyond ±4.19 m
+    /// validity range are clipped and flagged by the tick, like any input; a path beyond ±4.19 m
     /// is clipped here.
     ///
     /// ```

@@ -1,7 +1,7 @@
-//! The length that the activation-frequency relation of a motor unit takes.
+//! The length in the activation-frequency relation of a motor unit.
 //!
-//! It is the fascicles' length L; or, with effective length (VM 3.x), n_f of a unit takes its own
-//! L_eff: dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
+//! It is the fascicle length L or, with effective length (VM 3.x), the unit's own L_eff:
+//! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
 use super::mode::Moment;
 use crate::checksum::{Summed, summed};
@@ -12,25 +12,26 @@ use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 use core::fmt::Debug;
 
-/// Af depends on the fascicles' length.
+/// Af depends on the fascicle length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FascicleLength;
 
-/// Af depends on an effective length, which follows the fascicles' later the less a unit is active.
+/// Af depends on the effective length, which follows the fascicle length more slowly the less
+/// active a unit is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EffectiveLength;
 
-/// The length that the activation-frequency relation of a unit takes.
+/// The length in the activation-frequency relation of a unit.
 #[doc(hidden)]
 pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
-    /// What of it changes from tick to tick.
+    /// State of the length.
     type State: Copy + Debug + PartialEq;
     type Coefficients: Copy + Debug + Summed;
     const WORDS: usize;
-    /// That of the discrete recruitment which takes it.
+    /// Mode number of discrete recruitment with this length.
     const MODE: u32;
 
-    /// Of a type, in a muscle whose equations hold from one fascicle length (L_ce0) to another.
+    /// Coefficients of a type in a muscle with a validity range of fascicle lengths (L_ce0).
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients;
     fn at_rest() -> Self::State;
     fn words(state: Self::State) -> impl Iterator<Item = S::Bits>;
@@ -39,8 +40,8 @@ pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError>;
 
-    /// Advances it by one tick, in the middle of which Af of the unit is `activation`. None where
-    /// it is that of the fascicles.
+    /// Advances the length by one tick with the unit's mid-tick Af. Returns the mid-tick length, or
+    /// `None` if it is the fascicle length.
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
         state: &mut Self::State,
@@ -71,16 +72,17 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
     }
 }
 
-/// 1 - Af is not taken as less: n_f has hardly an influence on Af then.
+/// Lower bound of 1 - Af: near Af = 1, n_f has hardly any effect on Af.
 const LEAST_INACTIVE: f64 = 1e-4;
 
 /// Coefficients of the effective length.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectiveLengthCoefficients<S: Scalar> {
-    /// dt/T_L: what 1/x² of the distance x = L - L_eff gains in half a tick, of an inactive unit.
+    /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, with the distance
+    /// x = L - L_eff.
     rate: S,
     least_inactive: S,
-    /// Where L_eff is kept: where n_f is defined.
+    /// Range of L_eff, in which n_f is defined.
     range: Range<S>,
 }
 
@@ -116,7 +118,8 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
     }
 
     /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half of the
-    /// tick L is where it is in the middle of that, and the rest is exact: x → x/√(1 + 2 x² t/τ).
+    /// tick L is held at its value in the middle of that half; the rest is exact:
+    /// x → x/√(1 + 2 x² t/τ).
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
         state: &mut S::LagState,
@@ -126,7 +129,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         let before = S::of(*state);
         let inactive = (S::ONE - activation).max(coefficients.least_inactive);
         let quarter = moment.travel.half().half();
-        // The way to a length, and the share 1 - 1/√grown of it that is gone, as that of a lag.
+        // Distance to a length, and the share 1 - 1/√grown of it that is covered, as in a lag.
         let step = |length: S, from: S| {
             let distance = coefficients.range.clip(length).0 - from;
             let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);

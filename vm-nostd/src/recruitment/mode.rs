@@ -1,4 +1,4 @@
-//! What a mode of recruitment is.
+//! Traits of a recruitment mode.
 
 use crate::checksum::Summed;
 use crate::error::ParameterError;
@@ -10,14 +10,14 @@ use crate::scalar::{Scalar, sealed::Sealed};
 use crate::tick::time_step::TimeStep;
 use core::fmt::Debug;
 
-/// A mode of recruitment, for muscles of `N` fibre types.
+/// A recruitment mode for muscles of `N` fibre types.
 pub trait Recruitment<S: Scalar, const N: usize>:
     Sealed + Copy + Debug + PartialEq + 'static
 {
-    /// Tells modes apart in a saved state.
+    /// Identifies the mode in the fingerprint of a saved state.
     #[doc(hidden)]
     const MODE: u32;
-    /// What there is to say of a muscle in this mode besides its parameters.
+    /// Parameters of this mode besides those of the muscle.
     type Units;
     #[doc(hidden)]
     type State: RecruitmentState<S>;
@@ -25,20 +25,21 @@ pub trait Recruitment<S: Scalar, const N: usize>:
     type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State> + Summed;
 }
 
-/// What of a mode changes from tick to tick.
+/// State of a mode.
 #[doc(hidden)]
 pub trait RecruitmentState<S: Scalar>: Copy + Debug + PartialEq {
-    /// How many words it is saved in.
+    /// Number of words.
     const WORDS: usize;
 
-    /// Its bits, always in the same order.
+    /// Its words in fixed order.
     fn words(&self) -> impl Iterator<Item = S::Bits>;
 }
 
-/// What the modes do differently in a tick.
+/// Tick of a mode.
 #[doc(hidden)]
 pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
-    /// Whether the passive force, filament compression included, is kept from pushing on its own.
+    /// Whether the passive force, including filament compression, is clamped to non-negative
+    /// values.
     const PASSIVE_ONLY_PULLS: bool;
 
     type Units;
@@ -50,18 +51,18 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
         step: TimeStep,
     ) -> Result<Self, ParameterError>;
 
-    /// Not recruited, nor ever was.
+    /// The state at rest.
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State;
 
-    /// The state whose words come next, if every value is one that a tick can leave behind.
+    /// Restores the state from the next words; an error if a value is out of range.
     fn restored<I: Iterator<Item = S::Bits>>(
         &self,
         fibers: &[Fiber<S>; N],
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError>;
 
-    /// Advances recruitment, excitation and sag by one tick, and says of each type, in their order,
-    /// how it is `recruited`.
+    /// Advances recruitment, excitation and sag by one tick and calls `recruited` for each type in
+    /// order.
     fn advance(
         &self,
         fibers: &[Fiber<S>; N],
@@ -71,33 +72,32 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
     );
 }
 
-/// What recruitment depends on during a tick.
+/// Inputs of recruitment during a tick.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Moment<S: Scalar, const N: usize> {
     pub(crate) input: Input<S>,
-    /// Fascicle length at the middle, L_ce0.
+    /// Mid-tick fascicle length, L_ce0.
     pub(crate) fascicle_length: S,
-    /// How much longer the fascicles become, L_ce0.
+    /// Change of fascicle length during the tick, L_ce0.
     pub(crate) travel: S,
-    /// 1/L at the middle, L being where the filaments' equations hold.
+    /// Mid-tick 1/L, with L clamped to the validity range of the filaments' equations.
     pub(crate) reciprocal: S,
-    /// Y of each type at the middle.
+    /// Mid-tick Y of each type.
     pub(crate) yieldings: [S; N],
 }
 
-/// How a fibre type is recruited at the middle of a tick.
+/// Mid-tick recruitment of a fibre type.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Recruited<S> {
-    /// Af, in the discrete modes summed over the units by cross section.
+    /// Af; in the discrete modes the sum over the units, weighted by cross section.
     pub(crate) activation: S,
-    /// Share of the muscle's force that the type's filaments add, at Af FL FV = 1.
+    /// Share of the muscle's force from the type's filaments at Af FL FV = 1.
     pub(crate) weight: S,
-    /// Change of the weight across the tick, if Af has jumped where the tick starts, as with the
-    /// stimulation frequency. Nothing else jumps: elsewhere the change since the last tick tells
-    /// that across this one.
+    /// Change of the weight across the tick if Af jumped at its start, as with the stimulation
+    /// frequency. Otherwise it is extrapolated from the change since the last tick.
     pub(crate) change_after_jump: Option<S>,
-    /// Share for the compression of its thick filaments.
+    /// Weight of the compression of its thick filaments.
     pub(crate) compression_weight: S,
 }

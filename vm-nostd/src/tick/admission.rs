@@ -1,9 +1,9 @@
-//! An input as a range admits it, and what was wrong with it.
+//! Clips inputs to their ranges.
 
 use crate::status::Status;
 use crate::tick::range::Range;
 
-/// What was wrong with an input.
+/// Whether an input was clipped or not finite.
 #[derive(Clone, Copy)]
 pub(crate) enum Admission {
     AsIs,
@@ -21,7 +21,7 @@ impl Admission {
     }
 }
 
-/// A value as a range admits it, and what was wrong with it; `instead` is taken for not-a-number.
+/// Clips a value to a range; NaN is replaced by `instead`.
 pub(crate) fn admit_one<T: Copy + PartialOrd>(
     range: &Range<T>,
     value: T,

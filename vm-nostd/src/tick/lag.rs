@@ -5,7 +5,7 @@ use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
 use crate::tick::time_step::TimeStep;
 
-/// `dy/dt = (target - y)/T`, exactly, over half a tick and over a tick.
+/// Exact solution of `dy/dt = (target - y)/T` over half a tick and over a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lag<S: Scalar> {
     half: S::Share,

@@ -19,15 +19,14 @@ impl<T: Copy + PartialOrd> Range<T> {
         Self { least: nearest(least), most: nearest(most) }
     }
 
-    /// The nearest value in the range, and whether that is another one; the least for
-    /// not-a-number.
+    /// Clamps a value and returns whether it was changed; NaN becomes the lower end.
     pub(crate) fn clip(&self, value: T) -> (T, bool) {
         let raised = if value > self.least { value } else { self.least };
         let clipped = if raised < self.most { raised } else { self.most };
         (clipped, clipped != value)
     }
 
-    /// Whether a value is in the range or out of it by no more than rounding may take it.
+    /// Whether a value is in the range, with a rounding tolerance.
     pub(crate) fn about_contains(&self, value: T, rounding: T) -> bool
     where
         T: Add<Output = T>,
@@ -40,7 +39,7 @@ impl<T: Copy + PartialOrd> Range<T> {
     }
 }
 
-/// What a share may be.
+/// Range of a share.
 pub(crate) fn share<S: Scalar>() -> Range<S> {
     Range { least: S::ZERO, most: S::ONE }
 }
