@@ -125,7 +125,7 @@ fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
         print(&muscles(&rows, args.share))?;
         print(
             &"pess max is the most expensive tick in the pessimistic setting of the timing model; \
-              flash wait states are in no setting.",
+              flash wait states are not modelled.",
         )?;
         for row in &rows {
             print(&format!("worst tick of {}: {}", row.case, row.replay))?;
