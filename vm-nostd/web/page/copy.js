@@ -51,12 +51,11 @@ fn main() -> Result<(), ParameterError> {
 `;
 }
 
-/** A run: its inputs in the columns of `vm run`, and its outputs to the digits that `vm run` writes. */
+/** A run: its inputs in the columns of `vm run --input`, then its outputs, all digits. */
 function runFile(rows) {
-  const digits = (value) => Number(value.toExponential(8));
   const line = (row) =>
     [row.time, row.activation, row.path, row.frequency]
-      .concat([row.force, row.length, row.velocity].map(digits), [row.status])
+      .concat([row.force, row.length, row.velocity, row.status])
       .join(",");
   const header =
     "t_s,activation,path_length_m,stim_hz,force_n,fascicle_length_l0,fascicle_velocity_l0_per_s,status";

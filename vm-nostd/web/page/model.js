@@ -7,6 +7,8 @@ const MODES = ["continuous", "fes", "discrete", "discrete-leff"];
 const CLASSES = ["economy", "standard", "fine"];
 /** Muscles that run side by side. */
 const SLOTS = 10;
+/** So many that V = 0 is one of them. */
+const CURVE_POINTS = 121;
 /** What a muscle puts out, in the order of the model. */
 const OUTPUTS = ["force", "length", "velocity", "slow", "fast"];
 
@@ -70,19 +72,19 @@ const model = {
     return this.wasm.output(slot, which);
   },
 
-  /** What a muscle is in SI units. */
+  /** What a muscle is, in SI units, L_ce0 and L_ce0/s. */
   quantities(slot) {
-    const names = ["mass", "fascicle", "tendon", "maxPath", "force", "shortest", "longest"];
+    const names = ["mass", "fascicle", "tendon", "maxPath", "force", "shortest", "longest"].concat(
+      ["shortestFascicle", "longestFascicle", "fastest"],
+    );
     return Object.fromEntries(names.map((name, index) => [name, this.wasm.quantity(slot, index)]));
   },
 
-  /** The points of a curve: 0 isometric, 1 passive, 2 force-velocity. */
-  curve(slot, curve) {
-    const points = [];
-    for (let index = 0; ; index += 1) {
-      const x = this.wasm.curve(slot, curve, index, 0);
-      if (Number.isNaN(x)) return points;
-      points.push([x, this.wasm.curve(slot, curve, index, 1)]);
-    }
+  /** Points of a curve between two values: 0 isometric, 1 passive, 2 force-velocity. */
+  curve(slot, curve, from, to) {
+    return Array.from({ length: CURVE_POINTS }, (_, index) => {
+      const x = from + ((to - from) * index) / (CURVE_POINTS - 1);
+      return [x, this.wasm.curve(slot, curve, x)];
+    });
   },
 };

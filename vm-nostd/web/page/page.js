@@ -44,7 +44,12 @@ function restart(path = sliders().path) {
   if (refusal === "") {
     run.quantities = model.quantities(0);
     run.tracks[0] = track(muscle, run.quantities.force);
-    run.curves = [0, 1, 2].map((curve) => model.curve(0, curve));
+    const { shortestFascicle, longestFascicle, fastest } = run.quantities;
+    run.curves = [
+      model.curve(0, 0, shortestFascicle, longestFascicle),
+      model.curve(0, 1, shortestFascicle, longestFascicle),
+      model.curve(0, 2, fastest, -fastest),
+    ];
     run.tick = 0;
     run.path = path;
     run.inputs[1][0] = path;

@@ -4,11 +4,9 @@
 //! is generated. Quantities are in the units of a muscle file, so that a muscle copied from the page
 //! is the muscle of the page, to the last bit.
 
-mod curves;
 mod muscle;
 mod running;
 
-use curves::Curves;
 use muscle::Definition;
 use running::Running;
 use std::cell::RefCell;
@@ -20,8 +18,6 @@ const SLOTS: usize = 10;
 struct Slot {
     definition: Definition,
     running: Box<dyn Running>,
-    /// Computed when they are first asked for.
-    curves: Option<Curves>,
 }
 
 struct Page {
@@ -88,7 +84,7 @@ pub extern "C" fn define(
         let result = running::at_rest(&definition, arithmetic, mode, path_m);
         let result = match (result, page.slots.get_mut(slot as usize)) {
             (Ok(running), Some(place)) => {
-                *place = Some(Slot { definition, running, curves: None });
+                *place = Some(Slot { definition, running });
                 Ok(())
             }
             (Ok(_), None) => Err(format!("slot = {slot}: must be between 0 and {}", SLOTS - 1)),
@@ -137,7 +133,8 @@ pub extern "C" fn output(slot: u32, which: u32) -> f64 {
 }
 
 /// A quantity of the muscle of a slot, in SI units: 0 mass (kg), 1 L_ce0 (m), 2 L_se0 (m),
-/// 3 L_mt_max (m), 4 F0 (N), 5 and 6 the shortest and the longest path (m).
+/// 3 L_mt_max (m), 4 F0 (N), 5 and 6 the shortest and the longest path (m); 7 and 8 the shortest
+/// and the longest fascicles that are valid (L_ce0), 9 the least V_max (L_ce0/s).
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn quantity(slot: u32, which: u32) -> f64 {
@@ -151,23 +148,10 @@ pub extern "C" fn status_name_byte(bit: u32, index: u32) -> u32 {
     running::status_name(bit).as_bytes().get(index as usize).map_or(0, |byte| u32::from(*byte))
 }
 
-/// A coordinate of a point of a curve of the muscle of a slot, all at full activation: `curve` 0 is
-/// isometric force, 1 passive force, 2 force where the fascicles pass L_ce0; `axis` 0 is length
-/// (L_ce0), of curve 2 velocity (L_ce0/s), and 1 force (F0). Not a number beyond the last point.
+/// A curve of the muscle of a slot, fully activated, in F0: 0 is the isometric force at a length `x`
+/// (L_ce0), 1 the passive force there, 2 the force at L_ce0 and a velocity `x` (L_ce0/s).
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
-pub extern "C" fn curve(slot: u32, curve: u32, index: u32, axis: u32) -> f64 {
-    of_slot(slot, |slot| {
-        if slot.curves.is_none() {
-            slot.curves = Curves::of(&slot.definition).ok();
-        }
-        let points = slot.curves.as_ref().and_then(|curves| match curve {
-            0 => Some(&curves.isometric),
-            1 => Some(&curves.passive),
-            2 => Some(&curves.velocity),
-            _ => None,
-        });
-        let point = points.and_then(|points| points.get(index as usize));
-        point.map_or(f64::NAN, |point| if axis == 0 { point.0 } else { point.1 })
-    })
+pub extern "C" fn curve(slot: u32, curve: u32, x: f64) -> f64 {
+    of_slot(slot, |slot| slot.running.curve(curve, x))
 }

@@ -66,7 +66,7 @@ impl Definition {
         }
     }
 
-    /// A quantity in SI units.
+    /// A quantity, see [`quantity`](crate::quantity).
     pub fn quantity(&self, which: u32) -> f64 {
         let params = self.params();
         match which {
@@ -77,6 +77,13 @@ impl Definition {
             4 => params.max_isometric_force(),
             5 => params.path_domain().0,
             6 => params.path_domain().1,
+            7 => params.fascicle_domain().0,
+            8 => params.fascicle_domain().1,
+            9 => {
+                let fastest =
+                    |fiber: &FiberParams| fiber.fiber_type.force_velocity.maximum_velocity;
+                params.fibers.iter().map(fastest).fold(0.0, f64::min)
+            }
             _ => f64::NAN,
         }
     }

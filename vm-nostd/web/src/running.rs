@@ -20,6 +20,8 @@ pub trait Running {
     fn step(&mut self, activation: f64, path_m: f64, frequency: f64) -> u16;
     /// Force (N), length (L_ce0), velocity (L_ce0/s), and the gain of each type (F0).
     fn output(&self, which: usize) -> f64;
+    /// A curve at full activation, F0; see [`curve`](crate::curve).
+    fn curve(&self, which: u32, x: f64) -> f64;
 }
 
 struct Stepped<S: Scalar, R: Recruitment<S, TYPES>> {
@@ -28,6 +30,8 @@ struct Stepped<S: Scalar, R: Recruitment<S, TYPES>> {
     output: Output<S>,
     /// F0, N.
     force: f64,
+    /// Shares of the types in the cross section.
+    fractions: [f64; TYPES],
 }
 
 impl<S: Scalar, R: Recruitment<S, TYPES>> Running for Stepped<S, R> {
@@ -52,6 +56,24 @@ impl<S: Scalar, R: Recruitment<S, TYPES>> Running for Stepped<S, R> {
                 gains.nth(which - 3).map_or(f64::NAN, |word| S::from_bits(word).to_f64())
             }
         }
+    }
+
+    fn curve(&self, which: u32, x: f64) -> f64 {
+        let curves = self.muscle.curves();
+        let (length, velocity) =
+            if which == 2 { (S::ONE, S::from_f64(x)) } else { (S::from_f64(x), S::ZERO) };
+        let passive = curves.passive(length).to_f64();
+        if which == 1 {
+            return passive.max(0.0);
+        }
+        let active = |(index, fraction): (usize, &f64)| {
+            curves.fiber(index).map_or(0.0, |fiber| {
+                let force = fiber.force_length(length) * fiber.force_velocity(length, velocity);
+                fraction * force.to_f64()
+            })
+        };
+        let active: f64 = self.fractions.iter().enumerate().map(active).sum();
+        (active + passive + curves.compression(length).to_f64()).max(0.0)
     }
 }
 
@@ -101,7 +123,9 @@ fn of_mode<S: Scalar, R: Recruitment<S, TYPES>>(
     let muscle = Muscle::<S, R, TYPES>::build_with_units(&params, units, TimeStep::MILLISECOND)?;
     let state = muscle.rest(S::path_length(path_m))?;
     let output = muscle.observe(&state);
-    Ok(Box::new(Stepped { muscle, state, output, force: params.max_isometric_force() }))
+    let fractions = params.fibers.map(|fiber| fiber.fraction);
+    let force = params.max_isometric_force();
+    Ok(Box::new(Stepped { muscle, state, output, force, fractions }))
 }
 
 /// Name of a bit of a status; empty if it has none.
