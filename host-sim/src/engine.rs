@@ -1,10 +1,13 @@
 //! Runs a muscle over a trace of inputs, in any mode and arithmetic.
 
+mod stepped;
+
 use crate::model_muscle::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Sample, Simulation, SolverError};
 use crate::trace::InputTrace;
 use serde::{Deserialize, Serialize};
-use std::rc::Rc;
+use std::sync::Arc;
+use stepped::{Fatiguing, Stepped};
 use vm_nostd as vm;
 
 /// Arithmetic of a run.
@@ -59,6 +62,14 @@ pub enum RunError {
         "units = (missing), fibre type of rank {0}: the discrete modes need the number of units"
     )]
     NoUnits(u8),
+    /// The reference has no words to restore, and a saved state is that of one muscle only.
+    #[error("words = {words}: {problem}")]
+    Restore {
+        /// How many words were given.
+        words: usize,
+        /// Why they were refused.
+        problem: String,
+    },
     /// More motor units than the host supports.
     #[error("{0} motor units: at most {most} are supported", most = MOST_UNITS)]
     UnitCount(usize),
@@ -71,7 +82,7 @@ pub enum RunError {
 pub type Row = (Sample, vm::Status);
 
 /// A muscle with its state during a run.
-pub trait Running {
+pub trait Running: Send + Sync {
     /// Current output.
     fn row(&self) -> Row;
     /// Steps one tick.
@@ -80,6 +91,10 @@ pub trait Running {
     fn fork(&self) -> Box<dyn Running>;
     /// Calls `watch` with each word of the state; never for the reference.
     fn watch(&self, watch: &mut dyn FnMut(u64));
+    /// The state as words, fatigue included, with fingerprints; the reference has none.
+    fn save(&self) -> Option<Vec<u64>>;
+    /// Takes saved words back, or refuses them and stays as it is.
+    fn restore(&mut self, words: &[u64]) -> Result<(), RunError>;
 }
 
 /// An accuracy class of `vm-nostd`; the reference has none.
@@ -269,7 +284,7 @@ impl Rest<'_> {
             })
             .transpose()?;
         let f0 = params.max_isometric_force();
-        Ok(Box::new(Stepped { muscle: Rc::new(muscle), state, fatiguing, f0 }))
+        Ok(Box::new(Stepped { muscle: Arc::new(muscle), state, fatiguing, f0 }))
     }
 }
 
@@ -287,64 +302,14 @@ impl Running for Simulation {
     }
 
     fn watch(&self, _: &mut dyn FnMut(u64)) {}
-}
 
-/// A muscle of `vm-nostd` and its state.
-struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> {
-    muscle: Rc<vm::Muscle<S, R, N>>,
-    state: vm::State<S, R, N>,
-    fatiguing: Option<Fatiguing<S>>,
-    /// N.
-    f0: f64,
-}
-
-/// Fatigue of a muscle with its state.
-#[derive(Clone, Copy)]
-struct Fatiguing<S: vm::Scalar> {
-    fatigue: vm::Fatigue<S>,
-    state: vm::FatigueState<S>,
-    /// Under FES: depends on the stimulation frequency.
-    stimulated: bool,
-}
-
-/// Stimulation frequency that fatigues like natural firing, pps.
-const NATURAL: f64 = 100.0;
-
-impl<S: vm::Scalar> Fatiguing<S> {
-    fn advance(&mut self, input: vm::Input<S>) -> S {
-        let natural = S::quantity(NATURAL);
-        let frequency = if self.stimulated { input.stimulation_frequency } else { natural };
-        self.fatigue.advance(&mut self.state, input.activation, frequency)
-    }
-}
-
-impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Stepped<S, R, N> {
-    fn row(&self) -> Row {
-        let output = self.muscle.observe(&self.state);
-        let output = match &self.fatiguing {
-            Some(fatiguing) => output.fatigued(fatiguing.state.fitness()),
-            None => output,
-        };
-        row(output, self.f0)
+    fn save(&self) -> Option<Vec<u64>> {
+        None
     }
 
-    fn step(&mut self, input: Input) -> Result<Row, RunError> {
-        let input = scaled(&input);
-        let output = self.muscle.step(&mut self.state, input);
-        let output = match &mut self.fatiguing {
-            Some(fatiguing) => output.fatigued(fatiguing.advance(input)),
-            None => output,
-        };
-        Ok(row(output, self.f0))
-    }
-
-    fn fork(&self) -> Box<dyn Running> {
-        Box::new(Self { muscle: Rc::clone(&self.muscle), ..*self })
-    }
-
-    fn watch(&self, watch: &mut dyn FnMut(u64)) {
-        let fatiguing = self.fatiguing.iter().flat_map(|fatiguing| fatiguing.state.words());
-        self.state.words().chain(fatiguing).for_each(|word| watch(word.into()));
+    fn restore(&mut self, words: &[u64]) -> Result<(), RunError> {
+        let problem = "the reference has no saved state; copy it instead".to_owned();
+        Err(RunError::Restore { words: words.len(), problem })
     }
 }
 
@@ -357,23 +322,6 @@ fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
         Some(fiber) => Err(RunError::NoUnits(fiber.fiber_type.rank)),
         None => Ok(muscle.fibers.iter().map(|fiber| fiber.units.len()).sum()),
     }
-}
-
-fn scaled<S: vm::Scalar>(input: &Input) -> vm::Input<S> {
-    vm::Input {
-        activation: S::from_f64(input.activation),
-        path_length: S::path_length(input.path_length),
-        stimulation_frequency: S::quantity(input.stimulation_frequency),
-    }
-}
-
-fn row<S: vm::Scalar>(output: vm::Output<S>, f0: f64) -> Row {
-    let sample = Sample {
-        force: S::newtons_of(output.force, output.relative_force, f0),
-        fascicle_length: output.fascicle_length.to_f64(),
-        fascicle_velocity: output.fascicle_velocity.to_f64(),
-    };
-    (sample, output.status)
 }
 
 /// Names of the flags that are set, joined by `|`; `ok` if none is.

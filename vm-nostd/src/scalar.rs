@@ -36,23 +36,25 @@ pub trait Scalar:
     + Sub<Output = Self>
     + Mul<Output = Self>
     + Neg<Output = Self>
+    + Send
+    + Sync
     + 'static
 {
     /// A word of a saved state.
-    type Bits: Copy + Debug + Eq + From<u32> + Into<u64> + Summed;
+    type Bits: Copy + Debug + Eq + From<u32> + TryFrom<u64> + Into<u64> + Summed + Send + Sync;
     /// A constant to multiply with, of any magnitude.
-    type Factor: Copy + Debug + Summed;
+    type Factor: Copy + Debug + Summed + Send + Sync;
     /// State of a lag, with more resolution than the number itself.
-    type LagState: Copy + Debug + PartialEq;
+    type LagState: Copy + Debug + PartialEq + Send + Sync;
     /// Share, 0..1, of the distance of a lag to its target.
-    type Share: Copy + Debug + Summed;
+    type Share: Copy + Debug + Summed + Send + Sync;
     /// A musculotendon path length: m in floating point, µm in fixed point.
-    type PathLength: Copy + Debug + PartialEq + PartialOrd + Summed;
+    type PathLength: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
     /// A quantity with a unit: stimulation frequency in pps, pulse amplitude in mA, pulse width in
     /// µs.
-    type Quantity: Copy + Debug + PartialEq + PartialOrd + Summed;
+    type Quantity: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
     /// A tendon force: N in floating point, mN in fixed point.
-    type Force: Copy + Debug + PartialEq + PartialOrd + Summed;
+    type Force: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
 
     /// Number of the arithmetic in a saved state.
     #[doc(hidden)]

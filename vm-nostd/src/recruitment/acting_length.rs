@@ -23,10 +23,10 @@ pub struct EffectiveLength;
 
 /// The length in the activation-frequency relation of a unit.
 #[doc(hidden)]
-pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + 'static {
+pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// State of the length.
-    type State: Copy + Debug + PartialEq;
-    type Coefficients: Copy + Debug + Summed;
+    type State: Copy + Debug + PartialEq + Send + Sync;
+    type Coefficients: Copy + Debug + Summed + Send + Sync;
     const WORDS: usize;
     /// Mode number of discrete recruitment with this length.
     const MODE: u32;

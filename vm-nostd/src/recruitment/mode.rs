@@ -12,7 +12,7 @@ use core::fmt::Debug;
 
 /// A recruitment mode for muscles of `N` fibre types.
 pub trait Recruitment<S: Scalar, const N: usize>:
-    Sealed + Copy + Debug + PartialEq + 'static
+    Sealed + Copy + Debug + PartialEq + Send + Sync + 'static
 {
     /// Identifies the mode in the fingerprint of a saved state.
     #[doc(hidden)]
@@ -22,12 +22,15 @@ pub trait Recruitment<S: Scalar, const N: usize>:
     #[doc(hidden)]
     type State: RecruitmentState<S>;
     #[doc(hidden)]
-    type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State> + Summed;
+    type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State>
+        + Summed
+        + Send
+        + Sync;
 }
 
 /// State of a mode.
 #[doc(hidden)]
-pub trait RecruitmentState<S: Scalar>: Copy + Debug + PartialEq {
+pub trait RecruitmentState<S: Scalar>: Copy + Debug + PartialEq + Send + Sync {
     /// Number of words.
     const WORDS: usize;
 
