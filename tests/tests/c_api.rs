@@ -16,19 +16,71 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
+/// A source with the functions of its arithmetic: cbindgen does not expand macros.
+fn expanded(source: &str, functions: &str) -> String {
+    let (own, invocation) = source.split_once("\nfunctions! {\n").expect("an invocation");
+    let mut text = functions.to_owned();
+    let pairs = invocation.lines().filter_map(|line| {
+        let (key, value) = line.trim().strip_suffix(',')?.split_once(" = ")?;
+        Some((format!("${key}"), value.to_owned()))
+    });
+    // Longer keys first: `$step` is the start of another.
+    let mut pairs: Vec<(String, String)> = pairs.collect();
+    pairs.sort_by_key(|(key, _)| std::cmp::Reverse(key.len()));
+    for (key, value) in pairs {
+        text = text.replace(&key, &value);
+    }
+    format!("{own}\n{text}")
+}
+
+/// Assertions of the sizes of all structs.
+fn size_assertions(sizes: &str, header: &str) -> String {
+    let mut text = String::new();
+    let rows = sizes.lines().filter_map(|line| {
+        line.trim().strip_prefix("Vm")?.strip_suffix(',')?.split_once(" = ")
+    });
+    for (name, bytes) in rows {
+        writeln!(text, "VM_ASSERT_SIZE(Vm{name}, {bytes});").expect("a string");
+    }
+    for arithmetic in ["F32", "Fixed", "F64"] {
+        for thing in ["Muscle", "Steady", "Fatigue", "Curve"] {
+            let (upper, kind) = (thing.to_uppercase(), arithmetic.to_uppercase());
+            writeln!(text, "VM_ASSERT_SIZE(Vm{thing}{arithmetic}, VM_{upper}_{kind}_SIZE);")
+                .expect("a string");
+        }
+    }
+    let structs = header.matches("typedef struct").count();
+    assert_eq!(text.lines().count(), structs, "the size of every struct is asserted");
+    text
+}
+
 #[test]
 fn the_header_is_current() {
     let folder = root().join("vm-nostd/c");
+    let source = |name: &str| {
+        std::fs::read_to_string(folder.join(format!("src/{name}.rs"))).expect("a source")
+    };
+    let functions = source("functions");
+    let (_, functions) = functions.split_once("// <functions>").expect("a start");
+    let (functions, _) = functions.split_once("// </functions>").expect("an end");
     let config =
         cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for source in ["f32", "fixed", "params", "result", "slot", "status"] {
-        builder = builder.with_src(folder.join(format!("src/{source}.rs")));
+    for name in ["params", "presets", "derived", "kinds", "units", "result", "status", "extras"] {
+        builder = builder.with_src(folder.join(format!("src/{name}.rs")));
+    }
+    let expansions = tempfile::tempdir().expect("a folder");
+    for name in ["f32", "fixed", "f64"] {
+        let path = expansions.path().join(format!("{name}.rs"));
+        std::fs::write(&path, expanded(&source(name), functions)).expect("a source");
+        builder = builder.with_src(path);
     }
     let bindings = builder.generate().expect("a header");
     let mut text = Vec::new();
     bindings.write(&mut text);
-    let text = String::from_utf8(text).expect("a text");
+    // C++98 and C90 know no comma before the end of an enum.
+    let mut text = String::from_utf8(text).expect("a text").replace(",\n}", "\n}");
+    text += &size_assertions(&source("sizes"), &text);
     let header = folder.join("include/vm_nostd.h");
     if std::env::var_os("VM_WRITE").is_some() {
         std::fs::write(&header, &text).expect("a header");
@@ -165,6 +217,7 @@ fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) ->
         .arg("-I")
         .arg(folder)
         .arg(sources.join("golden.c"))
+        .arg(sources.join("misuse.c"))
         .arg(sources.join(platform))
         .args(arguments)
         .arg("-o")
@@ -182,10 +235,11 @@ fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) ->
     }
 }
 
-/// Asserts that a program's words equal Rust's. A failed check in the C program sets its exit
-/// status to the line number.
+/// Asserts that a program's words equal Rust's. A failed check writes its line number to standard
+/// error.
 fn compare(output: &Output) {
-    assert!(output.status.success(), "tests/c/golden.c: {}", output.status);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "tests/c: {}, {said}", output.status);
     let expected = inputs().bytes();
     assert_eq!(output.stdout.len(), expected.len());
     assert_eq!(expected.len(), 4 * 20 * (ROWS - 1));

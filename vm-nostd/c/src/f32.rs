@@ -1,22 +1,54 @@
 //! Muscles computed in float.
 
-use crate::params::{VmMuscleParams, refused};
-use crate::result::{VmError, VmResult};
-use crate::slot::{Slot, VmMode, keep, mode_of, words};
-use core::mem::MaybeUninit;
-use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Input, TimeStep};
+use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
+use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
+use crate::functions::functions;
+use crate::muscle::{self, Order};
+use crate::params::VmMuscleParams;
+use crate::pointer::{Place, read};
+use crate::result::{VmError, VmResult, plain, told};
+use crate::units::VmUnits;
+use model::{Input, Output};
 
-/// Bytes of a VmMuscleF32.
+/// Bytes of memory of a muscle without fibre types, and of each type.
+pub const VM_MUSCLE_F32_BASE: usize = 232;
+/// Each type.
+pub const VM_MUSCLE_F32_PER_TYPE: usize = 176;
+/// Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
+pub const VM_UNITS_F32_BASE: usize = 4320;
+/// Each type.
+pub const VM_UNITS_F32_PER_TYPE: usize = 144;
+/// Bytes of memory of an inverse without fibre types, and of each type.
+pub const VM_STEADY_F32_BASE: usize = 160;
+/// Each type.
+pub const VM_STEADY_F32_PER_TYPE: usize = 64;
+/// Bytes of a VmMuscleF32: two types.
 pub const VM_MUSCLE_F32_SIZE: usize = 584;
-/// Words of its saved state.
+/// Bytes of a VmSteadyF32: two types.
+pub const VM_STEADY_F32_SIZE: usize = 288;
+/// Bytes of a VmFatigueF32.
+pub const VM_FATIGUE_F32_SIZE: usize = 64;
+/// Bytes of a VmCurveF32.
+pub const VM_CURVE_F32_SIZE: usize = 64;
+/// Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
 pub const VM_F32_STATE_WORDS: usize = 22;
 
-/// A muscle computed in float.
-pub type VmMuscleF32 = Slot<f32, 0x564D_4633>;
+/// Mark of a muscle, and of an inverse.
+const MARK: u32 = 0x564D_4633;
+const STEADY_MARK: u32 = 0x564D_5333;
 
-const _: () =
-    assert!(size_of::<VmMuscleF32>() == VM_MUSCLE_F32_SIZE && align_of::<VmMuscleF32>() == 8);
-const _: () = assert!(words::<f32>() == VM_F32_STATE_WORDS);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmMuscleF32([u64; VM_MUSCLE_F32_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmSteadyF32([u64; VM_STEADY_F32_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmFatigueF32([u64; VM_FATIGUE_F32_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmCurveF32([u64; VM_CURVE_F32_SIZE / 8]);
 
 /// Inputs of a tick.
 #[repr(C)]
@@ -46,162 +78,80 @@ pub struct VmOutputF32 {
     pub status: u16,
 }
 
-/// A saved state.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct VmStateF32 {
-    /// The words, for storage.
-    pub words: [u32; VM_F32_STATE_WORDS],
-}
-
-/// Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
-/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and
-/// limits.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_build(
-    muscle: Option<&mut MaybeUninit<VmMuscleF32>>,
-    size: usize,
-    params: Option<&VmMuscleParams>,
-    mode: u32,
-    time_step_s: f64,
-    error: Option<&mut VmError>,
-) -> VmResult {
-    let (Some(muscle), Some(params)) = (muscle, params) else { return VmResult::NullPointer };
-    if size != VM_MUSCLE_F32_SIZE {
-        return VmResult::Size;
-    }
-    let built = params.model().and_then(|params| {
-        let step = TimeStep::from_seconds(time_step_s)?;
-        let path = params.middle_path() as f32;
-        Ok(match mode_of(mode)? {
-            VmMode::Continuous => {
-                let muscle = ContinuousMuscle::build(&params, step)?;
-                let state = muscle.rest(path)?;
-                BankedMuscle::Continuous(muscle, state)
-            }
-            VmMode::Fes => {
-                let muscle = FesMuscle::build(&params, step)?;
-                let state = muscle.rest(path)?;
-                BankedMuscle::Fes(muscle, state)
-            }
-        })
-    });
-    match built {
-        Ok(built) => {
-            Slot::put(muscle, built);
-            VmResult::Ok
+impl InputOf<f32> for VmInputF32 {
+    fn input(self) -> Input<f32> {
+        Input {
+            activation: self.activation,
+            path_length: self.path_length_m,
+            stimulation_frequency: self.stimulation_frequency_pps,
         }
-        Err(refusal) => refused(refusal, error),
     }
 }
 
-/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
-/// unchanged.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_rest(muscle: Option<&mut VmMuscleF32>, path_length_m: f32) -> VmResult {
-    let Some(slot) = muscle else { return VmResult::NullPointer };
-    let rested = slot.get_mut().and_then(|muscle| {
-        let path = path_length_m;
-        match muscle {
-            BankedMuscle::Continuous(muscle, state) => muscle.rest(path).map(|rest| *state = rest),
-            BankedMuscle::Fes(muscle, state) => muscle.rest(path).map(|rest| *state = rest),
+impl OutputOf<f32> for VmOutputF32 {
+    fn of(output: Output<f32>) -> Self {
+        Self {
+            force_n: output.force,
+            fascicle_length: output.fascicle_length.number(),
+            fascicle_velocity: output.fascicle_velocity.number(),
+            relative_force: output.relative_force.number(),
+            status: output.status.bits(),
         }
-        .map_err(|_| VmResult::Parameter)
-    });
-    rested.err().unwrap_or(VmResult::Ok)
-}
-
-/// Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_step(
-    muscle: Option<&mut VmMuscleF32>,
-    input: Option<&VmInputF32>,
-    output: Option<&mut VmOutputF32>,
-) -> VmResult {
-    let (Some(slot), Some(input), Some(place)) = (muscle, input, output) else {
-        return VmResult::NullPointer;
-    };
-    let muscle = match slot.get_mut() {
-        Ok(muscle) => muscle,
-        Err(result) => return result,
-    };
-    let output = muscle.step(Input {
-        activation: input.activation,
-        path_length: input.path_length_m,
-        stimulation_frequency: input.stimulation_frequency_pps,
-    });
-    *place = VmOutputF32 {
-        force_n: output.force,
-        fascicle_length: output.fascicle_length,
-        fascicle_velocity: output.fascicle_velocity,
-        relative_force: output.relative_force,
-        status: output.status.bits(),
-    };
-    VmResult::Ok
-}
-
-/// Saves a muscle's state, with a fingerprint of muscle, mode and time step.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_save(
-    muscle: Option<&VmMuscleF32>,
-    saved: Option<&mut VmStateF32>,
-) -> VmResult {
-    let (Some(slot), Some(VmStateF32 { words })) = (muscle, saved) else {
-        return VmResult::NullPointer;
-    };
-    match slot.get() {
-        Ok(BankedMuscle::Continuous(muscle, state)) => keep(muscle.save(state), words),
-        Ok(BankedMuscle::Fes(muscle, state)) => keep(muscle.save(state), words),
-        Err(result) => return result,
     }
-    VmResult::Ok
 }
 
-/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
-/// VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_restore(
-    muscle: Option<&mut VmMuscleF32>,
-    saved: Option<&VmStateF32>,
-) -> VmResult {
-    let (Some(slot), Some(VmStateF32 { words })) = (muscle, saved) else {
-        return VmResult::NullPointer;
-    };
-    let restored = slot.get_mut().and_then(|muscle| {
-        match muscle {
-            BankedMuscle::Continuous(muscle, state) => {
-                muscle.restore(*words).map(|was| *state = was)
-            }
-            BankedMuscle::Fes(muscle, state) => muscle.restore(*words).map(|was| *state = was),
-        }
-        .map_err(VmResult::from)
-    });
-    restored.err().unwrap_or(VmResult::Ok)
-}
-
-/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with
-/// every tick. Firmware compares them to detect a flipped bit.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_f32_checksums(
-    muscle: Option<&VmMuscleF32>,
-    coefficients: Option<&mut u32>,
-    state: Option<&mut u32>,
-) -> VmResult {
-    let (Some(slot), Some(coefficients), Some(state)) = (muscle, coefficients, state) else {
-        return VmResult::NullPointer;
-    };
-    match slot.get() {
-        Ok(muscle) => {
-            *coefficients = muscle.coefficients_checksum();
-            *state = muscle.state_checksum();
-            VmResult::Ok
-        }
-        Err(result) => result,
+impl VmOutputF32 {
+    /// Leaves the force of a fitness, as the model does.
+    fn tire(&mut self, fitness: f32) {
+        self.force_n = model::Scalar::of_share(fitness, self.force_n);
+        let relative = f32::number_from(self.relative_force);
+        self.relative_force = (fitness * relative).number();
     }
+}
+
+functions! {
+    STATE_WORDS = VM_F32_STATE_WORDS,
+    MUSCLE_BASE = VM_MUSCLE_F32_BASE,
+    MUSCLE_PER_TYPE = VM_MUSCLE_F32_PER_TYPE,
+    UNITS_BASE = VM_UNITS_F32_BASE,
+    UNITS_PER_TYPE = VM_UNITS_F32_PER_TYPE,
+    STEADY_BASE = VM_STEADY_F32_BASE,
+    STEADY_PER_TYPE = VM_STEADY_F32_PER_TYPE,
+    S = f32,
+    Muscle = VmMuscleF32,
+    Input = VmInputF32,
+    Output = VmOutputF32,
+    Info = VmInfoF32,
+    Steady = VmSteadyF32,
+    SteadyOutput = VmSteadyOutputF32,
+    Fatigue = VmFatigueF32,
+    Curve = VmCurveF32,
+    Path = f32,
+    Number = f32,
+    Amount = f32,
+    Newtons = f32,
+    Word = u32,
+    size = vm_f32_size,
+    build = vm_f32_build,
+    build_units = vm_f32_build_units,
+    rest = vm_f32_rest,
+    step = vm_f32_step,
+    observe = vm_f32_observe,
+    info = vm_f32_info,
+    save = vm_f32_save,
+    restore = vm_f32_restore,
+    checksums = vm_f32_checksums,
+    fatigued = vm_f32_fatigued,
+    fatigue_build = vm_f32_fatigue_build,
+    fatigue_advance = vm_f32_fatigue_advance,
+    fatigue_save = vm_f32_fatigue_save,
+    fatigue_restore = vm_f32_fatigue_restore,
+    curve_build = vm_f32_curve_build,
+    curve_activation = vm_f32_curve_activation,
+    curve_amplitude = vm_f32_curve_amplitude_for,
+    curve_width = vm_f32_curve_width_for,
+    curve_checksum = vm_f32_curve_checksum,
+    steady_build = vm_f32_steady_build,
+    steady_force = vm_f32_steady_force,
+    steady_activation = vm_f32_steady_activation_for,
 }

@@ -1,22 +1,54 @@
 //! Muscles computed in fixed point.
 
-use crate::params::{VmMuscleParams, refused};
-use crate::result::{VmError, VmResult};
-use crate::slot::{Slot, VmMode, keep, mode_of, words};
-use core::mem::MaybeUninit;
-use model::{BankedMuscle, ContinuousMuscle, FesMuscle, Fixed, Input, Scalar, TimeStep};
+use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
+use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
+use crate::functions::functions;
+use crate::muscle::{self, Order};
+use crate::params::VmMuscleParams;
+use crate::pointer::{Place, read};
+use crate::result::{VmError, VmResult, plain, told};
+use crate::units::VmUnits;
+use model::{Fixed, Input, Output};
 
-/// Bytes of a VmMuscleFixed.
+/// Bytes of memory of a muscle without fibre types, and of each type.
+pub const VM_MUSCLE_FIXED_BASE: usize = 288;
+/// Each type.
+pub const VM_MUSCLE_FIXED_PER_TYPE: usize = 208;
+/// Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
+pub const VM_UNITS_FIXED_BASE: usize = 5912;
+/// Each type.
+pub const VM_UNITS_FIXED_PER_TYPE: usize = 160;
+/// Bytes of memory of an inverse without fibre types, and of each type.
+pub const VM_STEADY_FIXED_BASE: usize = 216;
+/// Each type.
+pub const VM_STEADY_FIXED_PER_TYPE: usize = 72;
+/// Bytes of a VmMuscleFixed: two types.
 pub const VM_MUSCLE_FIXED_SIZE: usize = 704;
-/// Words of its saved state.
+/// Bytes of a VmSteadyFixed: two types.
+pub const VM_STEADY_FIXED_SIZE: usize = 360;
+/// Bytes of a VmFatigueFixed.
+pub const VM_FATIGUE_FIXED_SIZE: usize = 72;
+/// Bytes of a VmCurveFixed.
+pub const VM_CURVE_FIXED_SIZE: usize = 88;
+/// Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
 pub const VM_FIXED_STATE_WORDS: usize = 31;
 
-/// A muscle computed in fixed point.
-pub type VmMuscleFixed = Slot<Fixed, 0x564D_5158>;
+/// Mark of a muscle, and of an inverse.
+const MARK: u32 = 0x564D_5158;
+const STEADY_MARK: u32 = 0x564D_5358;
 
-const _: () =
-    assert!(size_of::<VmMuscleFixed>() == VM_MUSCLE_FIXED_SIZE && align_of::<VmMuscleFixed>() == 8);
-const _: () = assert!(words::<Fixed>() == VM_FIXED_STATE_WORDS);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmMuscleFixed([u64; VM_MUSCLE_FIXED_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmSteadyFixed([u64; VM_STEADY_FIXED_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmFatigueFixed([u64; VM_FATIGUE_FIXED_SIZE / 8]);
+/// Memory in C.
+#[repr(C, align(8))]
+pub struct VmCurveFixed([u64; VM_CURVE_FIXED_SIZE / 8]);
 
 /// Inputs of a tick.
 #[repr(C)]
@@ -46,165 +78,80 @@ pub struct VmOutputFixed {
     pub status: u16,
 }
 
-/// A saved state.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct VmStateFixed {
-    /// The words, for storage.
-    pub words: [u32; VM_FIXED_STATE_WORDS],
-}
-
-/// Builds a muscle for a time step (s; 1e-4 to 2e-3), at rest in the middle of its path. `size` is
-/// `sizeof(*muscle)`. On VM_RESULT_PARAMETER `error`, which may be null, has the field, value and
-/// limits.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_build(
-    muscle: Option<&mut MaybeUninit<VmMuscleFixed>>,
-    size: usize,
-    params: Option<&VmMuscleParams>,
-    mode: u32,
-    time_step_s: f64,
-    error: Option<&mut VmError>,
-) -> VmResult {
-    let (Some(muscle), Some(params)) = (muscle, params) else { return VmResult::NullPointer };
-    if size != VM_MUSCLE_FIXED_SIZE {
-        return VmResult::Size;
-    }
-    let built = params.model().and_then(|params| {
-        let step = TimeStep::from_seconds(time_step_s)?;
-        let path = Fixed::path_length(params.middle_path());
-        Ok(match mode_of(mode)? {
-            VmMode::Continuous => {
-                let muscle = ContinuousMuscle::build(&params, step)?;
-                let state = muscle.rest(path)?;
-                BankedMuscle::Continuous(muscle, state)
-            }
-            VmMode::Fes => {
-                let muscle = FesMuscle::build(&params, step)?;
-                let state = muscle.rest(path)?;
-                BankedMuscle::Fes(muscle, state)
-            }
-        })
-    });
-    match built {
-        Ok(built) => {
-            Slot::put(muscle, built);
-            VmResult::Ok
-        }
-        Err(refusal) => refused(refusal, error),
+impl InputOf<Fixed> for VmInputFixed {
+    fn input(self) -> Input<Fixed> {
+        Input::<Fixed>::from_integers(
+            self.activation_per_mille,
+            self.path_length_um,
+            self.stimulation_tenths_pps,
+        )
     }
 }
 
-/// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
-/// unchanged.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_rest(
-    muscle: Option<&mut VmMuscleFixed>,
-    path_length_um: i32,
-) -> VmResult {
-    let Some(slot) = muscle else { return VmResult::NullPointer };
-    let rested = slot.get_mut().and_then(|muscle| {
-        let path = Input::<Fixed>::from_integers(0, path_length_um, 0).path_length;
-        match muscle {
-            BankedMuscle::Continuous(muscle, state) => muscle.rest(path).map(|rest| *state = rest),
-            BankedMuscle::Fes(muscle, state) => muscle.rest(path).map(|rest| *state = rest),
+impl OutputOf<Fixed> for VmOutputFixed {
+    fn of(output: Output<Fixed>) -> Self {
+        Self {
+            force_mn: output.force,
+            fascicle_length: output.fascicle_length.number(),
+            fascicle_velocity: output.fascicle_velocity.number(),
+            relative_force: output.relative_force.number(),
+            status: output.status.bits(),
         }
-        .map_err(|_| VmResult::Parameter)
-    });
-    rested.err().unwrap_or(VmResult::Ok)
-}
-
-/// Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_step(
-    muscle: Option<&mut VmMuscleFixed>,
-    input: Option<&VmInputFixed>,
-    output: Option<&mut VmOutputFixed>,
-) -> VmResult {
-    let (Some(slot), Some(input), Some(place)) = (muscle, input, output) else {
-        return VmResult::NullPointer;
-    };
-    let muscle = match slot.get_mut() {
-        Ok(muscle) => muscle,
-        Err(result) => return result,
-    };
-    let output = muscle.step(Input::<Fixed>::from_integers(
-        input.activation_per_mille,
-        input.path_length_um,
-        input.stimulation_tenths_pps,
-    ));
-    *place = VmOutputFixed {
-        force_mn: output.force,
-        fascicle_length: output.fascicle_length.to_bits(),
-        fascicle_velocity: output.fascicle_velocity.to_bits(),
-        relative_force: output.relative_force.to_bits(),
-        status: output.status.bits(),
-    };
-    VmResult::Ok
-}
-
-/// Saves a muscle's state, with a fingerprint of muscle, mode and time step.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_save(
-    muscle: Option<&VmMuscleFixed>,
-    saved: Option<&mut VmStateFixed>,
-) -> VmResult {
-    let (Some(slot), Some(VmStateFixed { words })) = (muscle, saved) else {
-        return VmResult::NullPointer;
-    };
-    match slot.get() {
-        Ok(BankedMuscle::Continuous(muscle, state)) => keep(muscle.save(state), words),
-        Ok(BankedMuscle::Fes(muscle, state)) => keep(muscle.save(state), words),
-        Err(result) => return result,
     }
-    VmResult::Ok
 }
 
-/// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
-/// VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_restore(
-    muscle: Option<&mut VmMuscleFixed>,
-    saved: Option<&VmStateFixed>,
-) -> VmResult {
-    let (Some(slot), Some(VmStateFixed { words })) = (muscle, saved) else {
-        return VmResult::NullPointer;
-    };
-    let restored = slot.get_mut().and_then(|muscle| {
-        match muscle {
-            BankedMuscle::Continuous(muscle, state) => {
-                muscle.restore(*words).map(|was| *state = was)
-            }
-            BankedMuscle::Fes(muscle, state) => muscle.restore(*words).map(|was| *state = was),
-        }
-        .map_err(VmResult::from)
-    });
-    restored.err().unwrap_or(VmResult::Ok)
-}
-
-/// Checksums of a muscle's coefficients, which never change, and of its state, which changes with
-/// every tick. Firmware compares them to detect a flipped bit.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_fixed_checksums(
-    muscle: Option<&VmMuscleFixed>,
-    coefficients: Option<&mut u32>,
-    state: Option<&mut u32>,
-) -> VmResult {
-    let (Some(slot), Some(coefficients), Some(state)) = (muscle, coefficients, state) else {
-        return VmResult::NullPointer;
-    };
-    match slot.get() {
-        Ok(muscle) => {
-            *coefficients = muscle.coefficients_checksum();
-            *state = muscle.state_checksum();
-            VmResult::Ok
-        }
-        Err(result) => result,
+impl VmOutputFixed {
+    /// Leaves the force of a fitness, as the model does.
+    fn tire(&mut self, fitness: Fixed) {
+        self.force_mn = model::Scalar::of_share(fitness, self.force_mn);
+        let relative = Fixed::number_from(self.relative_force);
+        self.relative_force = (fitness * relative).number();
     }
+}
+
+functions! {
+    STATE_WORDS = VM_FIXED_STATE_WORDS,
+    MUSCLE_BASE = VM_MUSCLE_FIXED_BASE,
+    MUSCLE_PER_TYPE = VM_MUSCLE_FIXED_PER_TYPE,
+    UNITS_BASE = VM_UNITS_FIXED_BASE,
+    UNITS_PER_TYPE = VM_UNITS_FIXED_PER_TYPE,
+    STEADY_BASE = VM_STEADY_FIXED_BASE,
+    STEADY_PER_TYPE = VM_STEADY_FIXED_PER_TYPE,
+    S = Fixed,
+    Muscle = VmMuscleFixed,
+    Input = VmInputFixed,
+    Output = VmOutputFixed,
+    Info = VmInfoFixed,
+    Steady = VmSteadyFixed,
+    SteadyOutput = VmSteadyOutputFixed,
+    Fatigue = VmFatigueFixed,
+    Curve = VmCurveFixed,
+    Path = i32,
+    Number = i32,
+    Amount = i32,
+    Newtons = i32,
+    Word = u32,
+    size = vm_fixed_size,
+    build = vm_fixed_build,
+    build_units = vm_fixed_build_units,
+    rest = vm_fixed_rest,
+    step = vm_fixed_step,
+    observe = vm_fixed_observe,
+    info = vm_fixed_info,
+    save = vm_fixed_save,
+    restore = vm_fixed_restore,
+    checksums = vm_fixed_checksums,
+    fatigued = vm_fixed_fatigued,
+    fatigue_build = vm_fixed_fatigue_build,
+    fatigue_advance = vm_fixed_fatigue_advance,
+    fatigue_save = vm_fixed_fatigue_save,
+    fatigue_restore = vm_fixed_fatigue_restore,
+    curve_build = vm_fixed_curve_build,
+    curve_activation = vm_fixed_curve_activation,
+    curve_amplitude = vm_fixed_curve_amplitude_for,
+    curve_width = vm_fixed_curve_width_for,
+    curve_checksum = vm_fixed_curve_checksum,
+    steady_build = vm_fixed_steady_build,
+    steady_force = vm_fixed_steady_force,
+    steady_activation = vm_fixed_steady_activation_for,
 }

@@ -1,16 +1,30 @@
 //! vm-nostd for C.
 //!
-//! Arguments are checked: no pointer may be null, sizes must be those of this library, and a muscle
-//! must have been built. The only `unsafe` is in the exported names, and where [`slot`] reads a
-//! muscle that it has built.
+//! Arguments are checked: pointers are neither null nor misaligned, memory is large enough, the
+//! header is of this version, and a muscle has been built and has a state. The only `unsafe` is in
+//! the exported names, in [`pointer`], which reads and writes what C owns, and in [`slot`], which
+//! reads what it has built.
 #![cfg_attr(target_os = "none", no_std)]
 
+mod arithmetic;
+mod derived;
+mod extras;
 mod f32;
+#[cfg(feature = "f64")]
+mod f64;
 mod fixed;
+mod functions;
+mod kinds;
+mod muscle;
+mod names;
 mod params;
+mod pointer;
+mod presets;
 mod result;
+mod sizes;
 mod slot;
 mod status;
+mod units;
 
 /// Unreachable: no code path panics.
 #[cfg(target_os = "none")]

@@ -1,11 +1,9 @@
 //! Parameters in C.
 
-use crate::result::{VmError, VmResult};
-use crate::slot::VM_FIBERS;
 use model::{
     ActivationParams, Class, CompressionParams, ElementParams, ExcitationParams, FiberParams,
     FiberType, ForceLengthParams, ForceVelocityParams, Limit, MuscleParams, ParallelParams,
-    ParameterError, SagParams, TendonParams, YieldParams, human_vm4, paper_table_1,
+    ParameterError, SagParams, TendonParams, YieldParams, paper_table_1,
 };
 
 /// Accuracy class: substeps of 0.25 ms or less; the default.
@@ -15,10 +13,28 @@ pub const VM_CLASS_ECONOMY: u32 = 1;
 /// Accuracy class: substeps of 0.1 ms or less.
 pub const VM_CLASS_FINE: u32 = 2;
 
-/// A muscle of two fibre types.
+/// Version of header and library: major, minor and patch, two digits each.
+pub const VM_VERSION: u32 = 100;
+/// Greatest number of fibre types. A library without the feature `types` has two only.
+pub const VM_MAX_FIBERS: usize = 6;
+
+/// VM_VERSION of the library.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn vm_version() -> u32 {
+    VM_VERSION
+}
+
+/// A muscle.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmMuscleParams {
+    /// VM_VERSION: the version of this header.
+    pub version: u32,
+    /// How accurate it is computed: VM_CLASS_STANDARD (0), VM_CLASS_ECONOMY or VM_CLASS_FINE.
+    pub accuracy_class: u32,
+    /// Number of fibre types used; 1 to 6, or 2 only without the library's feature `types`.
+    pub fiber_count: u32,
     /// Mass, kg; 1e-5 to 30.
     pub mass_kg: f64,
     /// Optimal fascicle length L_ce0, m; 0.005 to 1.
@@ -30,12 +46,11 @@ pub struct VmMuscleParams {
     pub max_path_length_m: f64,
     /// Activation U_r at which all fibres are recruited in the natural mode; 0.01 to 1.
     pub recruitment_saturation: f64,
-    /// How accurate it is computed: VM_CLASS_STANDARD (0), VM_CLASS_ECONOMY or VM_CLASS_FINE.
-    pub accuracy_class: u32,
     /// Coefficients shared by the fibre types.
     pub elements: VmElements,
-    /// Fibre types in order of rank; their fractions add to 1.
-    pub fibers: [VmFiber; VM_FIBERS],
+    /// Fibre types in order of rank; their fractions add to 1. Only the first `fiber_count` are
+    /// read.
+    pub fibers: [VmFiber; VM_MAX_FIBERS],
 }
 
 /// Coefficients shared by the fibre types.
@@ -114,6 +129,8 @@ pub struct VmFiber {
     pub fall_s: f64,
     /// T_f4, s.
     pub fall_per_activation_s: f64,
+    /// T_L, s; used in VM_MODE_EFFECTIVE_LENGTH only, and checked in all.
+    pub effective_length_time_s: f64,
     /// a_S1, if it sags.
     pub sag_resting_level: f64,
     /// a_S2, if it sags.
@@ -130,9 +147,12 @@ pub struct VmFiber {
 
 impl VmMuscleParams {
     /// Converts to the model's type; an unknown class and flags other than 0 and 1 are refused.
-    pub(crate) fn model(&self) -> Result<MuscleParams<VM_FIBERS>, ParameterError> {
+    pub(crate) fn model<const N: usize>(&self) -> Result<MuscleParams<N>, ParameterError> {
         let e = &self.elements;
-        let [first, second] = self.fibers;
+        let mut fibers = [FiberParams { fraction: 1.0, fiber_type: paper_table_1::SLOW }; N];
+        for (index, (place, fiber)) in fibers.iter_mut().zip(&self.fibers).enumerate() {
+            *place = fiber.model(index)?;
+        }
         let class = match self.accuracy_class {
             VM_CLASS_STANDARD => Class::Standard,
             VM_CLASS_ECONOMY => Class::Economy,
@@ -173,7 +193,7 @@ impl VmMuscleParams {
                 specific_tension: e.specific_tension,
                 density: e.density,
             },
-            fibers: [first.model(0)?, second.model(1)?],
+            fibers,
         })
     }
 }
@@ -240,8 +260,7 @@ impl VmFiber {
                     fall: self.fall_s,
                     fall_per_activation: self.fall_per_activation_s,
                 },
-                // Of a mode that is not here.
-                effective_length_time: paper_table_1::SLOW.effective_length_time,
+                effective_length_time: self.effective_length_time_s,
                 sag: sags.then_some(SagParams {
                     resting_level: self.sag_resting_level,
                     firing_level: self.sag_firing_level,
@@ -256,14 +275,15 @@ impl VmFiber {
         })
     }
 
-    fn of(t: &FiberType) -> Self {
+    /// A type with a fraction of one half.
+    pub(crate) fn of(t: &FiberType) -> Self {
         let nothing = (0.0, 0.0, 0.0);
         let sag =
             t.sag.as_ref().map_or(nothing, |s| (s.resting_level, s.firing_level, s.time_constant));
         let yielding =
             t.yielding.as_ref().map_or(nothing, |y| (y.depth, y.velocity, y.time_constant));
         Self {
-            fraction: 1.0 / VM_FIBERS as f64,
+            fraction: 0.5,
             rank: t.rank,
             has_sag: t.sag.is_some().into(),
             has_yield: t.yielding.is_some().into(),
@@ -284,6 +304,7 @@ impl VmFiber {
             rise_per_frequency_s: t.excitation.rise_per_frequency,
             fall_s: t.excitation.fall,
             fall_per_activation_s: t.excitation.fall_per_activation,
+            effective_length_time_s: t.effective_length_time,
             sag_resting_level: sag.0,
             sag_firing_level: sag.1,
             sag_time_s: sag.2,
@@ -292,44 +313,4 @@ impl VmFiber {
             yield_time_s: yielding.2,
         }
     }
-}
-
-/// Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are
-/// one half each. Null pointers are skipped.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_params_paper(
-    elements: Option<&mut VmElements>,
-    slow: Option<&mut VmFiber>,
-    fast: Option<&mut VmFiber>,
-) {
-    give(elements, || (&paper_table_1::ELEMENTS).into());
-    give(slow, || VmFiber::of(&paper_table_1::SLOW));
-    give(fast, || VmFiber::of(&paper_table_1::FAST));
-}
-
-/// Elements, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0; fractions are
-/// one half each. Null pointers are skipped.
-#[allow(unsafe_code)]
-#[unsafe(no_mangle)]
-pub extern "C" fn vm_params_human(
-    elements: Option<&mut VmElements>,
-    slow: Option<&mut VmFiber>,
-    fast: Option<&mut VmFiber>,
-) {
-    give(elements, || (&human_vm4::ELEMENTS).into());
-    give(slow, || VmFiber::of(&human_vm4::SLOW));
-    give(fast, || VmFiber::of(&human_vm4::FAST));
-}
-
-fn give<T>(place: Option<&mut T>, value: impl FnOnce() -> T) {
-    if let Some(place) = place {
-        *place = value();
-    }
-}
-
-/// Result of a parameter.
-pub(crate) fn refused(error: ParameterError, place: Option<&mut VmError>) -> VmResult {
-    give(place, || error.into());
-    VmResult::Parameter
 }

@@ -1,5 +1,6 @@
 //! Results of functions.
 
+use crate::names;
 use core::ffi::c_char;
 use model::{Limit, ParameterError, RestoreError};
 
@@ -11,9 +12,9 @@ pub enum VmResult {
     Ok = 0,
     /// A pointer is null.
     NullPointer = 1,
-    /// Wrong size of the muscle: header and library are of different versions.
+    /// The memory is too small; VmError has the bytes or words that are needed.
     Size = 2,
-    /// The muscle was not built, or was overwritten.
+    /// Nothing was built here, or by functions of another arithmetic, or it was overwritten.
     NotBuilt = 3,
     /// A parameter is out of range; VmError has details.
     Parameter = 4,
@@ -21,6 +22,12 @@ pub enum VmResult {
     State = 5,
     /// The words are of another muscle, mode or time step.
     OtherMuscle = 6,
+    /// A pointer is not aligned for its type.
+    Alignment = 7,
+    /// The muscle has no state yet: call rest or restore first.
+    NotRested = 8,
+    /// VmMuscleParams.version is not VM_VERSION of this library.
+    Version = 9,
 }
 
 /// Bytes of VmError's field, including the final 0.
@@ -30,9 +37,9 @@ pub const VM_FIELD_SIZE: usize = 96;
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmError {
-    /// Name as in VmMuscleParams, ended by 0; a derived quantity follows after a colon.
+    /// Name of the field in its struct, ended by 0; a derived quantity follows after a colon.
     pub field: [c_char; VM_FIELD_SIZE],
-    /// Index of the fibre type; -1 for the muscle's own parameters.
+    /// Index of the fibre type; -1 for all else.
     pub fiber: i32,
     /// The refused value, in the field's unit.
     pub value: f64,
@@ -42,23 +49,34 @@ pub struct VmError {
     pub most: f64,
 }
 
+impl VmError {
+    fn new(texts: [&str; 2], fiber: Option<usize>, value: f64, limits: (f64, f64)) -> Self {
+        let mut field = [0; VM_FIELD_SIZE];
+        // The last byte stays 0. `char` may be signed.
+        let places = field.iter_mut().take(VM_FIELD_SIZE - 1);
+        for (place, byte) in places.zip(texts.into_iter().flat_map(str::bytes)) {
+            *place = byte as c_char;
+        }
+        // Types are few.
+        let fiber = fiber.map_or(-1, |index| index as i32);
+        Self { field, fiber, value, least: limits.0, most: limits.1 }
+    }
+
+    /// Memory of `size`, where `needed` is needed.
+    pub(crate) fn size(size: usize, needed: usize) -> Self {
+        Self::new(["size", ""], None, size as f64, (needed as f64, f64::INFINITY))
+    }
+}
+
 impl From<ParameterError> for VmError {
     fn from(error: ParameterError) -> Self {
-        let (least, most) = match error.limit {
+        let limits = match error.limit {
             Limit::Within { least, most } => (least, most),
             Limit::SumIsOne { within } => (1.0 - within, 1.0 + within),
             Limit::NotBefore { rank } => (rank, 255.0),
             _ => (1.0, f64::INFINITY),
         };
-        let mut field = [0; VM_FIELD_SIZE];
-        // The last byte stays 0. `char` may be signed.
-        let room = VM_FIELD_SIZE - 1;
-        for (place, byte) in field.iter_mut().take(room).zip(error.field.bytes()) {
-            *place = byte as c_char;
-        }
-        // Types are few.
-        let fiber = error.fiber.map_or(-1, |index| index as i32);
-        Self { field, fiber, value: error.value, least, most }
+        Self::new(names::in_c(error.field), error.fiber, error.value, limits)
     }
 }
 
@@ -66,7 +84,50 @@ impl From<RestoreError> for VmResult {
     fn from(error: RestoreError) -> Self {
         match error {
             RestoreError::OtherMuscle { .. } => Self::OtherMuscle,
+            RestoreError::Length { .. } => Self::Size,
             _ => Self::State,
         }
     }
+}
+
+/// Why nothing was built.
+pub enum Refusal {
+    /// Without details.
+    Result(VmResult),
+    /// With details.
+    Parameter(ParameterError),
+    /// Memory of `size`, where `needed` is needed.
+    Size { size: usize, needed: usize },
+}
+
+impl From<VmResult> for Refusal {
+    fn from(result: VmResult) -> Self {
+        Self::Result(result)
+    }
+}
+
+impl From<ParameterError> for Refusal {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+/// Result for C, with details in `error` unless it is null.
+pub fn told(outcome: Result<(), Refusal>, error: *mut VmError) -> VmResult {
+    let Err(refusal) = outcome else { return VmResult::Ok };
+    let (result, details) = match refusal {
+        Refusal::Result(result) => (result, None),
+        Refusal::Parameter(refused) => (VmResult::Parameter, Some(VmError::from(refused))),
+        Refusal::Size { size, needed } => (VmResult::Size, Some(VmError::size(size, needed))),
+    };
+    // A place that cannot be written was refused before.
+    if let (Ok(place), Some(details)) = (crate::pointer::Place::new(error), details) {
+        place.put(details);
+    }
+    result
+}
+
+/// Result for C.
+pub fn plain(outcome: Result<(), VmResult>) -> VmResult {
+    outcome.err().unwrap_or(VmResult::Ok)
 }
