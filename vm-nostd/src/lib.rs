@@ -166,3 +166,7 @@ pub use scalar::fixed::Fixed;
 pub use state::State;
 pub use status::Status;
 pub use tick::time_step::TimeStep;
+
+// Their types are in public signatures.
+#[doc(no_inline)]
+pub use {bitflags, fixed, heapless};

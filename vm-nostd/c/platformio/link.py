@@ -20,7 +20,8 @@ def name():
     return CORES.get(core, "host")
 
 
-folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "lib", name())
+# PlatformIO runs this in the library's folder.
+folder = os.path.realpath(os.path.join("lib", name()))
 if not os.path.exists(os.path.join(folder, "libvm_nostd.a")):
     raise SystemExit("%s: no libvm_nostd.a; see README.md, PlatformIO" % folder)
 env.Append(LIBPATH=[folder], LIBS=["vm_nostd"], LINKFLAGS=["-Wl,--gc-sections"])  # noqa: F821
