@@ -156,9 +156,9 @@ impl PlacedMuscle {
 
     fn sums(&self) -> [u32; 3] {
         let mut electrode = Checksum::EMPTY;
-        if let Some((Electrode { channel, width_us, gap_us, recovery, .. }, curve)) =
-            &self.electrode
-        {
+        if let Some((described, curve)) = &self.electrode {
+            // The curve's parameters are not used after it is built; the built one is summed.
+            let Electrode { channel, curve: _, width_us, gap_us, recovery } = described;
             electrode.add(curve.checksum());
             electrode.add(u32::from_le_bytes([*channel, *recovery, 1, 1]));
             electrode.add(u32::from(*width_us) << 16 | u32::from(*gap_us));
