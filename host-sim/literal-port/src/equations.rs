@@ -19,8 +19,10 @@ const L_CE0: f64 = 0.11;
 const L_SE0: f64 = 0.02;
 /// Longest fascicle, L_ce0.
 const L_MAX: f64 = 1.498_750;
+/// F0 of the muscle, N: 31.8 N/cm² × 97.5 g/(1.06 g/cm³ × 11 cm).
+pub const F0: f64 = 31.8 * 97.5 / (1.06 * 11.0);
 /// F0/(m/2 L_ce0), L_ce0/s² per F0.
-const ACCELERATION: f64 = crate::F0 / (0.5 * 0.0975 * L_CE0);
+const ACCELERATION: f64 = F0 / (0.5 * 0.0975 * L_CE0);
 const FRACTION: [f64; 2] = [0.6, 0.4];
 /// Activation at which each type starts to be recruited.
 const THRESHOLD: [f64; 2] = [0.001, 0.48];

@@ -11,12 +11,9 @@ mod kernels;
 mod real;
 
 pub use equations::Drive;
-use equations::{Excitation, STATES, rates, rest, tendon_force};
+use equations::{Excitation, F0, STATES, rates, rest, tendon_force};
 pub use kernels::kernels_of_one_evaluation;
 pub use real::Real;
-
-/// F0 of the muscle, N: 31.8 N/cm² × 97.5 g/(1.06 g/cm³ × 11 cm).
-const F0: f64 = 31.8 * 97.5 / (1.06 * 11.0);
 
 /// Runge-Kutta steps per millisecond: the fewest with an error of at most 0.1 % of F0 in double
 /// precision on smooth and sudden inputs. With fewer the scheme chatters about the kink of the

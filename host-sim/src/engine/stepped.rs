@@ -1,6 +1,6 @@
 //! A muscle of `vm-nostd` that is being run, with its fatigue.
 
-use super::{Row, RunError, Running};
+use super::running::{Row, RunError, Running};
 use crate::reference::{Input, Sample};
 use std::sync::Arc;
 use vm_nostd as vm;

@@ -7,7 +7,7 @@ mod channel;
 mod session;
 
 use self::channel::{Asked, Channel, Pulse, SECOND_US};
-use self::session::Session;
+use self::session::{BEHIND_US, Session};
 use crate::electrodes::{CHANNELS, Electrodes};
 use firmware::Stimulus;
 
@@ -42,9 +42,6 @@ pub struct Bounds {
     pub tick_us: u64,
 }
 
-/// For how long after something else was asked for, a pulse of before may still begin: the longest
-/// pulse of another channel, a step, and a tick.
-const BEHIND_US: u64 = 12_000;
 const FOR_EVER: u64 = u64::MAX / 2;
 /// A pulse that is cut short leaves its electrodes connected to each other for so long, up to a
 /// step.

@@ -1,9 +1,10 @@
 //! What follows from a muscle's parameters.
 
 use crate::kinds::by_types;
+use crate::outcome::told;
 use crate::params::{VM_MAX_FIBERS, VM_VERSION, VmMuscleParams};
 use crate::pointer::{Place, borrow};
-use crate::result::{Refusal, VmError, VmResult, told};
+use crate::result::{Refusal, VmError, VmResult};
 use model::{Limit, ParameterError};
 
 /// What follows from a muscle's parameters, in their units.

@@ -4,9 +4,10 @@ use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
 use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
 use crate::functions::functions;
 use crate::muscle::{self, Order};
+use crate::outcome::{plain, told};
 use crate::params::VmMuscleParams;
 use crate::pointer::{Place, read};
-use crate::result::{VmError, VmResult, plain, told};
+use crate::result::{VmError, VmResult};
 use crate::units::VmUnits;
 use model::{Input, Output};
 

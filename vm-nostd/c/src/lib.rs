@@ -17,6 +17,7 @@ mod functions;
 mod kinds;
 mod muscle;
 mod names;
+mod outcome;
 mod params;
 mod pointer;
 mod presets;

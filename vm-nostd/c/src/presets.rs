@@ -1,8 +1,9 @@
 //! Published elements and fibre types.
 
+use crate::outcome::plain;
 use crate::params::{VmElements, VmFiber};
 use crate::pointer::Place;
-use crate::result::{VmResult, plain};
+use crate::result::VmResult;
 use model::{ElementParams, FiberType, feline_vm4, human_vm4, paper_table_1};
 
 /// Writes a set; null pointers are skipped, and nothing is written if one is not aligned.

@@ -1,6 +1,8 @@
 //! A session, told by the pulses that were put out.
 
-use super::BEHIND_US;
+/// For how long after something else was asked for, a pulse of before may still begin: the longest
+/// pulse of another channel, a step, and a tick.
+pub(super) const BEHIND_US: u64 = 12_000;
 
 /// The time between one pulse and the next counts while something asks for pulses all the while.
 #[derive(Debug, Default)]
