@@ -123,6 +123,19 @@ static int A(misuse)(void) {
     REFUSED(OK, F(rest)(muscle, info.shortest_path));
     REFUSED(OK, F(rest)(muscle, info.longest_path));
     REFUSED(OK, F(rest)(muscle, PATH));
+    /* Curves. */
+    {
+        T(FiberCurves) of_fiber;
+        T(ElementCurves) of_elements;
+        REFUSED(OK, F(fiber_curves)(muscle, 0, 2 * NUMBER, 0, 2 * NUMBER, &of_fiber));
+        CHECK(of_fiber.force_length > 2 * NUMBER * 99 / 100 && of_fiber.force_velocity > 2 * NUMBER * 99 / 100);
+        CHECK(of_fiber.activation_frequency > NUMBER / 4 && of_fiber.activation_frequency < 2 * NUMBER);
+        REFUSED(PARAMETER, F(fiber_curves)(muscle, 2, 2 * NUMBER, 0, NUMBER, &of_fiber));
+        REFUSED(NULL_POINTER, F(fiber_curves)(muscle, 0, NUMBER, 0, NUMBER, 0));
+        REFUSED(OK, F(element_curves)(muscle, 2 * NUMBER, PATH, &of_elements));
+        CHECK(of_elements.parallel >= 0 && of_elements.compression <= 0 && of_elements.tendon > NUMBER);
+        REFUSED(NULL_POINTER, F(element_curves)(muscle, NUMBER, PATH, 0));
+    }
     /* Functions of another arithmetic. */
     REFUSED(NOT_BUILT, OTHER_CHECKSUMS((void *)muscle, &coefficients, &state));
     /* What a muscle cannot be in leaves it as it was. */

@@ -18,9 +18,9 @@ fn root() -> PathBuf {
 
 /// A source with the functions of its arithmetic: cbindgen does not expand macros.
 fn expanded(source: &str, functions: &str) -> String {
-    let (own, invocation) = source.split_once("\nfunctions! {\n").expect("an invocation");
+    let (own, invocations) = source.split_once("\nfunctions! {\n").expect("an invocation");
     let mut text = functions.to_owned();
-    let pairs = invocation.lines().filter_map(|line| {
+    let pairs = invocations.lines().filter_map(|line| {
         let (key, value) = line.trim().strip_suffix(',')?.split_once(" = ")?;
         Some((format!("${key}"), value.to_owned()))
     });
@@ -60,9 +60,12 @@ fn the_header_is_current() {
     let source = |name: &str| {
         std::fs::read_to_string(folder.join(format!("src/{name}.rs"))).expect("a source")
     };
-    let functions = source("functions");
-    let (_, functions) = functions.split_once("// <functions>").expect("a start");
-    let (functions, _) = functions.split_once("// </functions>").expect("an end");
+    let part = |name: &str| {
+        let text = source(name);
+        let (_, text) = text.split_once("// <functions>").expect("a start");
+        text.split_once("// </functions>").expect("an end").0.to_owned()
+    };
+    let functions = part("functions") + &part("extra_functions");
     let config =
         cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     let mut builder = cbindgen::Builder::new().with_config(config);
@@ -72,7 +75,7 @@ fn the_header_is_current() {
     let expansions = tempfile::tempdir().expect("a folder");
     for name in ["f32", "fixed", "f64"] {
         let path = expansions.path().join(format!("{name}.rs"));
-        std::fs::write(&path, expanded(&source(name), functions)).expect("a source");
+        std::fs::write(&path, expanded(&source(name), &functions)).expect("a source");
         builder = builder.with_src(path);
     }
     let bindings = builder.generate().expect("a header");

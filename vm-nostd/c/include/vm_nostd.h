@@ -851,6 +851,42 @@ typedef struct {
 } VmInfoF32;
 
 /**
+ * Curves of a fibre type.
+ */
+typedef struct {
+  /**
+   * FL, 0..1.
+   */
+  float force_length;
+  /**
+   * FV, at least 0; 1 at a velocity of 0.
+   */
+  float force_velocity;
+  /**
+   * Af, 0..1.
+   */
+  float activation_frequency;
+} VmFiberCurvesF32;
+
+/**
+ * Curves of the elements, F0.
+ */
+typedef struct {
+  /**
+   * F_pe1 without viscosity.
+   */
+  float parallel;
+  /**
+   * F_pe2 at full activation, at most 0.
+   */
+  float compression;
+  /**
+   * F_se, at least 0.
+   */
+  float tendon;
+} VmElementCurvesF32;
+
+/**
  * A muscle's fatigue.
  */
 typedef struct {
@@ -999,6 +1035,42 @@ typedef struct {
 } VmInfoFixed;
 
 /**
+ * Curves of a fibre type.
+ */
+typedef struct {
+  /**
+   * FL, 0..1.
+   */
+  int32_t force_length;
+  /**
+   * FV, at least 0; 1 at a velocity of 0.
+   */
+  int32_t force_velocity;
+  /**
+   * Af, 0..1.
+   */
+  int32_t activation_frequency;
+} VmFiberCurvesFixed;
+
+/**
+ * Curves of the elements, F0.
+ */
+typedef struct {
+  /**
+   * F_pe1 without viscosity.
+   */
+  int32_t parallel;
+  /**
+   * F_pe2 at full activation, at most 0.
+   */
+  int32_t compression;
+  /**
+   * F_se, at least 0.
+   */
+  int32_t tendon;
+} VmElementCurvesFixed;
+
+/**
  * Steady state under FES.
  */
 typedef struct {
@@ -1101,6 +1173,42 @@ typedef struct {
    */
   uint32_t state_words;
 } VmInfoF64;
+
+/**
+ * Curves of a fibre type.
+ */
+typedef struct {
+  /**
+   * FL, 0..1.
+   */
+  double force_length;
+  /**
+   * FV, at least 0; 1 at a velocity of 0.
+   */
+  double force_velocity;
+  /**
+   * Af, 0..1.
+   */
+  double activation_frequency;
+} VmFiberCurvesF64;
+
+/**
+ * Curves of the elements, F0.
+ */
+typedef struct {
+  /**
+   * F_pe1 without viscosity.
+   */
+  double parallel;
+  /**
+   * F_pe2 at full activation, at most 0.
+   */
+  double compression;
+  /**
+   * F_se, at least 0.
+   */
+  double tendon;
+} VmElementCurvesF64;
 
 /**
  * Steady state under FES.
@@ -1228,6 +1336,25 @@ VmResult vm_f32_restore(VmMuscleF32 *muscle, const uint32_t *words, size_t count
  * every tick. Firmware compares them to detect a flipped bit.
  */
 VmResult vm_f32_checksums(const VmMuscleF32 *muscle, uint32_t *coefficients, uint32_t *state);
+
+/**
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
+ * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ */
+VmResult vm_f32_fiber_curves(const VmMuscleF32 *muscle,
+                             uint32_t fiber,
+                             float fascicle_length,
+                             float fascicle_velocity,
+                             float frequency,
+                             VmFiberCurvesF32 *curves);
+
+/**
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ */
+VmResult vm_f32_element_curves(const VmMuscleF32 *muscle,
+                               float fascicle_length,
+                               float path_length,
+                               VmElementCurvesF32 *curves);
 
 /**
  * Builds fatigue for a time step, rested. `size` is that of the memory.
@@ -1393,6 +1520,25 @@ VmResult vm_fixed_restore(VmMuscleFixed *muscle, const uint32_t *words, size_t c
 VmResult vm_fixed_checksums(const VmMuscleFixed *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
+ * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ */
+VmResult vm_fixed_fiber_curves(const VmMuscleFixed *muscle,
+                               uint32_t fiber,
+                               int32_t fascicle_length,
+                               int32_t fascicle_velocity,
+                               int32_t frequency,
+                               VmFiberCurvesFixed *curves);
+
+/**
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ */
+VmResult vm_fixed_element_curves(const VmMuscleFixed *muscle,
+                                 int32_t fascicle_length,
+                                 int32_t path_length,
+                                 VmElementCurvesFixed *curves);
+
+/**
  * Builds fatigue for a time step, rested. `size` is that of the memory.
  */
 VmResult vm_fixed_fatigue_build(VmFatigueFixed *fatigue,
@@ -1556,6 +1702,25 @@ VmResult vm_f64_restore(VmMuscleF64 *muscle, const uint64_t *words, size_t count
  * every tick. Firmware compares them to detect a flipped bit.
  */
 VmResult vm_f64_checksums(const VmMuscleF64 *muscle, uint32_t *coefficients, uint32_t *state);
+
+/**
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
+ * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ */
+VmResult vm_f64_fiber_curves(const VmMuscleF64 *muscle,
+                             uint32_t fiber,
+                             double fascicle_length,
+                             double fascicle_velocity,
+                             double frequency,
+                             VmFiberCurvesF64 *curves);
+
+/**
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ */
+VmResult vm_f64_element_curves(const VmMuscleF64 *muscle,
+                               double fascicle_length,
+                               double path_length,
+                               VmElementCurvesF64 *curves);
 
 /**
  * Builds fatigue for a time step, rested. `size` is that of the memory.
@@ -1736,14 +1901,20 @@ VM_ASSERT_SIZE(VmInputF32, 12);
 VM_ASSERT_SIZE(VmOutputF32, 20);
 VM_ASSERT_SIZE(VmInfoF32, 28);
 VM_ASSERT_SIZE(VmSteadyOutputF32, 20);
+VM_ASSERT_SIZE(VmFiberCurvesF32, 12);
+VM_ASSERT_SIZE(VmElementCurvesF32, 12);
 VM_ASSERT_SIZE(VmInputFixed, 8);
 VM_ASSERT_SIZE(VmOutputFixed, 20);
 VM_ASSERT_SIZE(VmInfoFixed, 28);
 VM_ASSERT_SIZE(VmSteadyOutputFixed, 20);
+VM_ASSERT_SIZE(VmFiberCurvesFixed, 12);
+VM_ASSERT_SIZE(VmElementCurvesFixed, 12);
 VM_ASSERT_SIZE(VmInputF64, 24);
 VM_ASSERT_SIZE(VmOutputF64, 40);
 VM_ASSERT_SIZE(VmInfoF64, 40);
 VM_ASSERT_SIZE(VmSteadyOutputF64, 40);
+VM_ASSERT_SIZE(VmFiberCurvesF64, 24);
+VM_ASSERT_SIZE(VmElementCurvesF64, 24);
 VM_ASSERT_SIZE(VmMuscleF32, VM_MUSCLE_F32_SIZE);
 VM_ASSERT_SIZE(VmSteadyF32, VM_STEADY_F32_SIZE);
 VM_ASSERT_SIZE(VmFatigueF32, VM_FATIGUE_F32_SIZE);

@@ -1,6 +1,7 @@
 //! Muscles computed in float.
 
 use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
+use crate::extra_functions::extra_functions;
 use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
 use crate::functions::functions;
 use crate::muscle::{self, Order};
@@ -124,12 +125,12 @@ functions! {
     Output = VmOutputF32,
     Info = VmInfoF32,
     Steady = VmSteadyF32,
-    SteadyOutput = VmSteadyOutputF32,
     Fatigue = VmFatigueF32,
     Curve = VmCurveF32,
+    FiberCurves = VmFiberCurvesF32,
+    ElementCurves = VmElementCurvesF32,
     Path = f32,
     Number = f32,
-    Amount = f32,
     Newtons = f32,
     Word = u32,
     size = vm_f32_size,
@@ -142,6 +143,22 @@ functions! {
     save = vm_f32_save,
     restore = vm_f32_restore,
     checksums = vm_f32_checksums,
+    fiber_curves = vm_f32_fiber_curves,
+    element_curves = vm_f32_element_curves,
+}
+
+extra_functions! {
+    S = f32,
+    Input = VmInputF32,
+    Output = VmOutputF32,
+    Steady = VmSteadyF32,
+    SteadyOutput = VmSteadyOutputF32,
+    Fatigue = VmFatigueF32,
+    Curve = VmCurveF32,
+    Number = f32,
+    Amount = f32,
+    Newtons = f32,
+    Word = u32,
     fatigued = vm_f32_fatigued,
     fatigue_build = vm_f32_fatigue_build,
     fatigue_advance = vm_f32_fatigue_advance,

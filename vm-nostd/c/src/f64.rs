@@ -1,6 +1,7 @@
 //! Muscles computed in double.
 
 use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
+use crate::extra_functions::extra_functions;
 use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
 use crate::functions::functions;
 use crate::muscle::{self, Order};
@@ -124,12 +125,12 @@ functions! {
     Output = VmOutputF64,
     Info = VmInfoF64,
     Steady = VmSteadyF64,
-    SteadyOutput = VmSteadyOutputF64,
     Fatigue = VmFatigueF64,
     Curve = VmCurveF64,
+    FiberCurves = VmFiberCurvesF64,
+    ElementCurves = VmElementCurvesF64,
     Path = f64,
     Number = f64,
-    Amount = f64,
     Newtons = f64,
     Word = u64,
     size = vm_f64_size,
@@ -142,6 +143,22 @@ functions! {
     save = vm_f64_save,
     restore = vm_f64_restore,
     checksums = vm_f64_checksums,
+    fiber_curves = vm_f64_fiber_curves,
+    element_curves = vm_f64_element_curves,
+}
+
+extra_functions! {
+    S = f64,
+    Input = VmInputF64,
+    Output = VmOutputF64,
+    Steady = VmSteadyF64,
+    SteadyOutput = VmSteadyOutputF64,
+    Fatigue = VmFatigueF64,
+    Curve = VmCurveF64,
+    Number = f64,
+    Amount = f64,
+    Newtons = f64,
+    Word = u64,
     fatigued = vm_f64_fatigued,
     fatigue_build = vm_f64_fatigue_build,
     fatigue_advance = vm_f64_fatigue_advance,

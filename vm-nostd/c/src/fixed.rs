@@ -1,6 +1,7 @@
 //! Muscles computed in fixed point.
 
 use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
+use crate::extra_functions::extra_functions;
 use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
 use crate::functions::functions;
 use crate::muscle::{self, Order};
@@ -124,12 +125,12 @@ functions! {
     Output = VmOutputFixed,
     Info = VmInfoFixed,
     Steady = VmSteadyFixed,
-    SteadyOutput = VmSteadyOutputFixed,
     Fatigue = VmFatigueFixed,
     Curve = VmCurveFixed,
+    FiberCurves = VmFiberCurvesFixed,
+    ElementCurves = VmElementCurvesFixed,
     Path = i32,
     Number = i32,
-    Amount = i32,
     Newtons = i32,
     Word = u32,
     size = vm_fixed_size,
@@ -142,6 +143,22 @@ functions! {
     save = vm_fixed_save,
     restore = vm_fixed_restore,
     checksums = vm_fixed_checksums,
+    fiber_curves = vm_fixed_fiber_curves,
+    element_curves = vm_fixed_element_curves,
+}
+
+extra_functions! {
+    S = Fixed,
+    Input = VmInputFixed,
+    Output = VmOutputFixed,
+    Steady = VmSteadyFixed,
+    SteadyOutput = VmSteadyOutputFixed,
+    Fatigue = VmFatigueFixed,
+    Curve = VmCurveFixed,
+    Number = i32,
+    Amount = i32,
+    Newtons = i32,
+    Word = u32,
     fatigued = vm_fixed_fatigued,
     fatigue_build = vm_fixed_fatigue_build,
     fatigue_advance = vm_fixed_fatigue_advance,

@@ -97,7 +97,8 @@ macro_rules! of_units {
 #[cfg(feature = "units")]
 of_units!(Discrete, Effective);
 
-/// Calls `$call::<S, N>` (or `$call::<N>`) for a number of types; `$none` if this library does not have it.
+/// Calls `$call::<S, N>` (or `$call::<N>`) for a number of types; `$none` if this library does not
+/// have it.
 macro_rules! by_types {
     ($types:expr, $none:expr, $call:ident $(::<$S:ty>)?, ($($argument:expr),*)) => {
         match $types {

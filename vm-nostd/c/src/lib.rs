@@ -8,6 +8,7 @@
 
 mod arithmetic;
 mod derived;
+mod extra_functions;
 mod extras;
 mod f32;
 #[cfg(feature = "f64")]

@@ -283,3 +283,47 @@ pub fn checksums<S: Arithmetic, T>(
     second.put(sums.1);
     Ok(())
 }
+
+fn fiber_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
+    built: &Built,
+    fiber: u32,
+    at: [S; 3],
+) -> Result<[S; 3], VmResult> {
+    let curves = built.memory.muscle::<Held<S, R, N>>().muscle.curves();
+    let curves = curves.fiber(fiber as usize).ok_or(VmResult::Parameter)?;
+    let [length, velocity, frequency] = at;
+    Ok([
+        curves.force_length(length),
+        curves.force_velocity(length, velocity),
+        curves.activation_frequency(length, frequency),
+    ])
+}
+
+/// FL, FV and Af of a fibre type at a length, a velocity and a frequency.
+pub fn fiber_curves<S: Arithmetic, T>(
+    memory: *const T,
+    mark: u32,
+    fiber: u32,
+    at: [S; 3],
+) -> Result<[S; 3], VmResult> {
+    on!(Built::new(memory.cast_mut(), mark)?, fiber_curves_kind::<S>(fiber, at))
+}
+
+fn element_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
+    built: &Built,
+    length: S,
+    path: S::PathLength,
+) -> Result<[S; 3], VmResult> {
+    let curves = built.memory.muscle::<Held<S, R, N>>().muscle.curves();
+    Ok([curves.passive(length), curves.compression(length), curves.tendon(path, length)])
+}
+
+/// F_pe1, F_pe2 and F_se at a fascicle length on a path.
+pub fn element_curves<S: Arithmetic, T>(
+    memory: *const T,
+    mark: u32,
+    length: S,
+    path: S::PathLength,
+) -> Result<[S; 3], VmResult> {
+    on!(Built::new(memory.cast_mut(), mark)?, element_curves_kind::<S>(length, path))
+}

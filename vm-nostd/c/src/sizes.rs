@@ -9,8 +9,13 @@ macro_rules! sizes {
 
 use crate::derived::VmDerived;
 use crate::extras::{VmCurveParams, VmFatigueParams};
-use crate::f32::{VmInfoF32, VmInputF32, VmOutputF32, VmSteadyOutputF32};
-use crate::fixed::{VmInfoFixed, VmInputFixed, VmOutputFixed, VmSteadyOutputFixed};
+use crate::f32::{
+    VmElementCurvesF32, VmFiberCurvesF32, VmInfoF32, VmInputF32, VmOutputF32, VmSteadyOutputF32,
+};
+use crate::fixed::{
+    VmElementCurvesFixed, VmFiberCurvesFixed, VmInfoFixed, VmInputFixed, VmOutputFixed,
+    VmSteadyOutputFixed,
+};
 use crate::params::{VmElements, VmFiber, VmMuscleParams};
 use crate::result::VmError;
 use crate::units::{VmUnitSizes, VmUnits};
@@ -29,14 +34,20 @@ sizes! {
     VmOutputF32 = 20,
     VmInfoF32 = 28,
     VmSteadyOutputF32 = 20,
+    VmFiberCurvesF32 = 12,
+    VmElementCurvesF32 = 12,
     VmInputFixed = 8,
     VmOutputFixed = 20,
     VmInfoFixed = 28,
     VmSteadyOutputFixed = 20,
+    VmFiberCurvesFixed = 12,
+    VmElementCurvesFixed = 12,
 }
 
 #[cfg(feature = "f64")]
-use crate::f64::{VmInfoF64, VmInputF64, VmOutputF64, VmSteadyOutputF64};
+use crate::f64::{
+    VmElementCurvesF64, VmFiberCurvesF64, VmInfoF64, VmInputF64, VmOutputF64, VmSteadyOutputF64,
+};
 
 #[cfg(feature = "f64")]
 sizes! {
@@ -44,4 +55,6 @@ sizes! {
     VmOutputF64 = 40,
     VmInfoF64 = 40,
     VmSteadyOutputF64 = 40,
+    VmFiberCurvesF64 = 24,
+    VmElementCurvesF64 = 24,
 }
