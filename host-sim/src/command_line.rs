@@ -16,13 +16,13 @@ mod verify;
 use crate::engine::Arithmetic;
 use crate::figures;
 use crate::golden;
+use crate::markdown_table::markdown_table;
 use crate::output_file::unless_broken;
 use crate::readme;
 use crate::reference::Mode;
 use crate::report;
 use crate::trace;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use comfy_table::{Table, presets};
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -223,9 +223,8 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
 
 fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
     let claims = figures::make(&args.out, args.arithmetic)?;
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["figure", "claim", "claimed", "held to", "measured", "agrees", "why not"]);
+    let header = ["figure", "claim", "claimed", "held to", "measured", "agrees", "why not"];
+    let mut table = markdown_table(&header, []);
     for claim in &claims {
         let (agrees, why) = if claim.agrees { ("yes", "") } else { ("no", claim.why) };
         let (figure, limit, measured) = (claim.figure, &claim.limit, &claim.measured);

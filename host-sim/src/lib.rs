@@ -11,6 +11,7 @@ pub mod fit;
 pub mod golden;
 pub mod hil;
 pub mod ledger;
+mod markdown_table;
 pub mod measured;
 pub mod metrics;
 pub mod model_muscle;

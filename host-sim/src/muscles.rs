@@ -103,35 +103,35 @@ impl HumanMuscle {
         )
     }
 
-    /// Error of leaving out pennation, for the steady force at full activation.
-    pub fn pennation_cost(&self) -> PennationCost {
+    /// Error of steady force at full activation without pennation.
+    pub fn pennation_error(&self) -> PennationError {
         let muscle = self.muscle();
         let pennation = Pennation::new(self.pennation_deg.to_radians());
         let cosine = pennation.cosine(1.0);
         let shift = muscle.L_ce0 * (1.0 - cosine);
-        let mut cost = PennationCost { as_it_stands: 0.0, made_up_for: 0.0 };
+        let mut error = PennationError { uncorrected: 0.0, corrected: 0.0 };
         for percent in 70..=130 {
             let length = f64::from(percent) * 1e-2;
             let path = muscle.L_se0 + length * muscle.L_ce0 * pennation.cosine(length);
             let pennate = pennation.isometric_force(&muscle, path);
             let in_line = |path| Pennation::new(0.0).isometric_force(&muscle, path);
             let worse = |worst: f64, force: f64| worst.max(100.0 * (force - pennate).abs());
-            cost.as_it_stands = worse(cost.as_it_stands, in_line(path));
-            cost.made_up_for = worse(cost.made_up_for, cosine * in_line(path + shift));
+            error.uncorrected = worse(error.uncorrected, in_line(path));
+            error.corrected = worse(error.corrected, cosine * in_line(path + shift));
         }
-        cost
+        error
     }
 }
 
 /// Largest error of the steady force at full activation, % of F0, over fascicles of 0.7 to 1.3
 /// L_ce0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PennationCost {
+pub struct PennationError {
     /// On the same path with the same F0.
-    pub as_it_stands: f64,
+    pub uncorrected: f64,
     /// With F0 times the cosine of the angle, and the path longer by the missing projection of the
     /// fascicles at L_ce0, as a fit of force and path would find.
-    pub made_up_for: f64,
+    pub corrected: f64,
 }
 
 /// All named muscles, in table order.
@@ -169,7 +169,7 @@ mod tests {
     use crate::trace::InputTrace;
 
     #[test]
-    fn every_muscle_is_what_its_row_says() {
+    fn muscles_agree_with_their_rows() {
         let all = all();
         assert_eq!(all.len(), 20);
         for human in &all {
@@ -232,17 +232,17 @@ mod tests {
     }
 
     #[test]
-    fn what_pennation_costs_grows_with_the_angle() {
+    fn the_error_without_pennation_grows_with_the_angle() {
         let cost = |name: &str| {
             let human = all().into_iter().find(|human| human.name == name).expect("a muscle");
-            human.pennation_cost()
+            human.pennation_error()
         };
         let brachialis = cost("brachialis");
-        assert_eq!(brachialis, PennationCost { as_it_stands: 0.0, made_up_for: 0.0 });
+        assert_eq!(brachialis, PennationError { uncorrected: 0.0, corrected: 0.0 });
         let (lateral, soleus) = (cost("gastrocnemius_lateral"), cost("soleus"));
-        assert!(lateral.as_it_stands < soleus.as_it_stands, "{lateral:?} {soleus:?}");
-        assert!(soleus.made_up_for < soleus.as_it_stands, "{soleus:?}");
-        // At L_ce0 alone the tendon feels F0 cos 25 degrees: 9.4 % of F0 less.
-        assert!((9.0..40.0).contains(&soleus.as_it_stands), "{soleus:?}");
+        assert!(lateral.uncorrected < soleus.uncorrected, "{lateral:?} {soleus:?}");
+        assert!(soleus.corrected < soleus.uncorrected, "{soleus:?}");
+        // At L_ce0 the tendon carries F0 cos 25 degrees: 9.4 % of F0 less.
+        assert!((9.0..40.0).contains(&soleus.uncorrected), "{soleus:?}");
     }
 }

@@ -4,9 +4,9 @@ use super::{ModeName, print};
 use crate::arm::{self, Activations, Arm, Drive, Joints, Moment, Outcome, Swings};
 use crate::engine::{Arithmetic, status_names};
 use crate::figures;
+use crate::markdown_table::markdown_table;
 use crate::trace::{check_folder, write_atomically};
 use clap::Args;
-use comfy_table::{Table, presets};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -70,15 +70,9 @@ pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
         write_atomically(path, &table(&arm, &moments)?)?;
     }
     let outcome = Outcome::of(&arm, &moments, drive.time_step);
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "joint",
-        "final angle, deg",
-        "early swing, deg",
-        "late swing, deg",
-        "growth, 1/s",
-    ]);
+    let header =
+        ["joint", "final angle, deg", "early swing, deg", "late swing, deg", "growth, 1/s"];
+    let mut table = markdown_table(&header, []);
     for (index, joint) in ["shoulder", "elbow"].into_iter().enumerate() {
         let judged = |value: fn(&Swings) -> Joints| {
             let value = outcome.swings.as_ref().map(|swings| value(swings)[index]);

@@ -5,10 +5,11 @@ use crate::cycles::{
     self, Argument, CLOCKS, Core, Cost, MARGIN, Part, Profile, Row, Spread, Tracer, UnitCost,
 };
 use crate::engine::Class;
+use crate::markdown_table::markdown_table;
 use crate::readme;
 use crate::trace::write_atomically;
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -147,18 +148,6 @@ fn report(args: &CyclesArgs) -> Result<bool, Box<dyn Error>> {
     Ok(failed.is_empty() && current && counted)
 }
 
-fn new_table(header: &[&str], right_from: usize) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(header);
-    for column in right_from..header.len() {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
-}
-
 fn table(rows: &[Row]) -> Table {
     let header = [
         "core",
@@ -182,7 +171,7 @@ fn table(rows: &[Row]) -> Table {
         "stack B",
         "budget",
     ];
-    let mut table = new_table(&header, 2);
+    let mut table = markdown_table(&header, 2..header.len());
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows {
         table.add_row([
@@ -217,7 +206,7 @@ fn muscles(rows: &[Row], share: f64) -> String {
     let title = format!("muscles at 1 kHz in {:.0} % of a core of", share * 100.0);
     let mut header = vec![title.as_str()];
     header.extend(clocks.iter().map(String::as_str));
-    let mut table = new_table(&header, 1);
+    let mut table = markdown_table(&header, 1..header.len());
     for row in rows.iter().filter(|row| row.mode != "-") {
         let counts = CLOCKS.map(|clock| row.muscles(clock, share).to_string());
         let name = format!("{} on {}", row.case, row.target.name());
@@ -227,7 +216,7 @@ fn muscles(rows: &[Row], share: f64) -> String {
 }
 
 fn calls(profile: &Profile) -> String {
-    let mut table = new_table(&["setting", "mean", "p99", "max"], 1);
+    let mut table = markdown_table(&["setting", "mean", "p99", "max"], 1..4);
     for (setting, name) in ["optimistic", "typical", "pessimistic"].iter().enumerate() {
         let Spread { mean, p99, max } = Spread::of(&profile.calls, setting);
         let cells = [format!("{mean:.1}"), p99.to_string(), max.to_string()];
@@ -252,7 +241,7 @@ fn total(profile: &Profile) -> Cost {
 fn parts(what: &str, parts: &[Part], profile: &Profile) -> String {
     let total = total(profile);
     let header = [what, "instructions", "optimistic", "typical", "pessimistic", "% of typical"];
-    let mut table = new_table(&header, 1);
+    let mut table = markdown_table(&header, 1..header.len());
     for Part { name, cost } in parts {
         let [optimistic, typical, pessimistic] = cost.cycles;
         table.add_row([
@@ -269,7 +258,7 @@ fn parts(what: &str, parts: &[Part], profile: &Profile) -> String {
 
 fn listing(profile: &Profile, count: usize) -> Table {
     let header = ["address", "instruction", "executed", "typical", "each"];
-    let mut table = new_table(&header, 2);
+    let mut table = markdown_table(&header, 2..header.len());
     for (instruction, times, cost) in cycles::hottest(&profile.executions, count) {
         table.add_row([
             format!("{:#010x}", instruction.address),

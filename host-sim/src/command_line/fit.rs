@@ -2,9 +2,10 @@
 
 use super::print;
 use crate::fit::{CONFIRMED, Fit, Search, Start, Trials, fit, fitted_file, page};
+use crate::markdown_table::markdown_table;
 use crate::trace;
 use clap::Args;
-use comfy_table::{Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -108,15 +109,9 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(header.iter().copied());
-    table
-}
-
 fn parameters(fit: &Fit) -> Table {
-    let mut table = table(&["parameter", "value", "standard error", "95 % from", "to", "note"]);
+    let mut table =
+        markdown_table(&["parameter", "value", "standard error", "95 % from", "to", "note"], []);
     for estimate in &fit.estimates {
         let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.5e}"));
         table.add_row([
@@ -132,7 +127,8 @@ fn parameters(fit: &Fit) -> Table {
 }
 
 fn trials_table(fit: &Fit) -> Table {
-    let mut table = table(&["trial", "role", "mae % F0", "rms % F0", "mean % F0", "status"]);
+    let mut table =
+        markdown_table(&["trial", "role", "mae % F0", "rms % F0", "mean % F0", "status"], []);
     for trial in &fit.trials {
         table.add_row([
             trial.name.clone(),

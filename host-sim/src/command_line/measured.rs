@@ -3,10 +3,11 @@
 use super::fit::SearchArgs;
 use super::{complain, print};
 use crate::fit::Role;
+use crate::markdown_table::markdown_table;
 use crate::measured::{self, Board, LeftOut};
 use crate::readme;
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -86,21 +87,9 @@ fn text(board: &Board, left_out: &[LeftOut]) -> String {
     text
 }
 
-fn table(header: &[&str], numbers: std::ops::Range<usize>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(header.iter().copied());
-    for column in numbers {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
-}
-
 fn trials(board: &Board) -> Table {
     let header = ["dataset", "trial", "role", "left out", "mae % F0", "rms % F0", "published mae"];
-    let mut table = table(&header, 4..7);
+    let mut table = markdown_table(&header, 4..7);
     for row in &board.rows {
         let published = row
             .published_mae_pct_f0
@@ -119,7 +108,8 @@ fn trials(board: &Board) -> Table {
 }
 
 fn means(board: &Board, left_out: &[LeftOut]) -> Table {
-    let mut table = table(&["dataset", "left out", "mean mae, fitted", "predicted", "all"], 2..5);
+    let mut table =
+        markdown_table(&["dataset", "left out", "mean mae, fitted", "predicted", "all"], 2..5);
     let mut sets: Vec<&String> = board.rows.iter().map(|row| &row.dataset).collect();
     sets.dedup();
     for set in sets {

@@ -1,8 +1,8 @@
 //! `vm muscles`: named muscles and their assumptions.
 
 use super::print;
+use crate::markdown_table::markdown_table;
 use crate::muscles::{self, ASSUMPTIONS};
-use comfy_table::{CellAlignment, Table, presets};
 use std::error::Error;
 
 const HEADER: [&str; 11] = [
@@ -13,19 +13,18 @@ const HEADER: [&str; 11] = [
     "L_se0 cm",
     "L_mt_max cm",
     "slow",
-    "slow from",
+    "source",
     "pennation deg",
-    "its cost % F0",
-    "made up for % F0",
+    "error % F0",
+    "corrected % F0",
 ];
 
 pub fn run() -> Result<(), Box<dyn Error>> {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(HEADER);
+    let numbers = (1..HEADER.len()).filter(|&column| HEADER[column] != "source");
+    let mut table = markdown_table(&HEADER, numbers);
     for human in muscles::all() {
         let muscle = human.muscle();
-        let cost = human.pennation_cost();
+        let error = human.pennation_error();
         table.add_row([
             human.name,
             format!("{:.1}", muscle.f0()),
@@ -36,14 +35,9 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             format!("{:.2}", human.slow_fraction),
             human.slow_source,
             format!("{}", human.pennation_deg),
-            format!("{:.1}", cost.as_it_stands),
-            format!("{:.1}", cost.made_up_for),
+            format!("{:.1}", error.uncorrected),
+            format!("{:.1}", error.corrected),
         ]);
-    }
-    for column in (1..HEADER.len()).filter(|&column| HEADER[column] != "slow from") {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     print(&table)?;
     print(&"\nMorphometry: gait2392 and arm26 of the OpenSim project, CC BY 3.0. Assumed:")?;
@@ -51,8 +45,8 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         print(&format!("- {assumption}"))?;
     }
     print(
-        &"Cost of pennation left out: largest error of steady force at full activation, fascicles of 0.7 to 1.3 \
-          L_ce0, on the same path with the same F0; made up for, with F0 cos(angle) and the path shifted.",
+        &"error: largest error of steady force at full activation without pennation, for fascicles of \
+          0.7 to 1.3 L_ce0; corrected: the same with F0 cos(angle) and a shifted path.",
     )?;
     Ok(())
 }

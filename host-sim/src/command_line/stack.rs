@@ -1,11 +1,12 @@
 //! `vm stack`.
 
 use super::{complain, print};
+use crate::markdown_table::markdown_table;
 use crate::readme;
 use crate::stack::{self, Description, Report};
 use crate::target::{self, STIMULATOR, STM32F405};
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -63,18 +64,13 @@ pub fn run(args: &StackArgs) -> Result<bool, Box<dyn Error>> {
 
 /// Each task with its deepest path.
 fn table(report: &Report) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["task", "priority", "stack B", "deepest path"]);
+    let mut table = markdown_table(&["task", "priority", "stack B", "deepest path"], [2]);
     for entry in &report.entries {
         let path = &entry.deepest.path;
         let steps: Vec<String> =
             path.iter().map(|step| format!("{:6} {}", step.bytes, step.function)).collect();
         let bytes = entry.deepest.bytes.to_string();
         table.add_row([entry.task.clone(), entry.priority.clone(), bytes, steps.join("\n")]);
-    }
-    if let Some(column) = table.column_mut(2) {
-        column.set_cell_alignment(CellAlignment::Right);
     }
     table
 }

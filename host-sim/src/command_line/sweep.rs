@@ -2,10 +2,10 @@
 
 use super::{ModeName, print};
 use crate::engine::{Arithmetic, Class, mode_name, status_names};
+use crate::markdown_table::markdown_table;
 use crate::sweep::{KEYS, Space, Sweep, Variation};
 use crate::trace::write_atomically;
 use clap::{Args, ValueEnum};
-use comfy_table::{Table, presets};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -114,9 +114,8 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
     }
     let output = &args.output;
     let ledger = sweep.run(output)?;
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["arithmetic", "max % F0", "status", "replay: cargo vm sweep ..."]);
+    let header = ["arithmetic", "max % F0", "status", "replay: cargo vm sweep ..."];
+    let mut table = markdown_table(&header, []);
     for worst in sweep.worst(&ledger, args.worst) {
         let case = worst.case;
         table.add_row([

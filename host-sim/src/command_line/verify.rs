@@ -2,9 +2,10 @@
 
 use super::{complain, print};
 use crate::engine::Class;
+use crate::markdown_table::markdown_table;
 use crate::verify::{self, Report, Row};
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 
 #[derive(Debug, Default, Args)]
@@ -82,9 +83,7 @@ fn summary(report: &Report) -> String {
 
 /// Every comparison.
 fn table(report: &Report) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
+    let header = [
         "scenario",
         "mode",
         "arithmetic",
@@ -94,7 +93,8 @@ fn table(report: &Report) -> Table {
         "bias % F0",
         "tolerance",
         "pass",
-    ]);
+    ];
+    let mut table = markdown_table(&header, 4..8);
     for row in &report.rows {
         table.add_row([
             row.scenario.clone(),
@@ -107,11 +107,6 @@ fn table(report: &Report) -> Table {
             format!("{:.5}", row.tolerance_pct_f0),
             if row.pass { "yes" } else { "NO" }.to_owned(),
         ]);
-    }
-    for column in 4..8 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     table
 }

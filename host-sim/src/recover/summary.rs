@@ -4,8 +4,9 @@ use super::list::{Free, OFFSET, free};
 use super::study::{LEADING, OF_PARAMETER, Study, TRAILING};
 use crate::engine::mode_name;
 use crate::ledger::Ledger;
+use crate::markdown_table::markdown_table;
 use crate::reference::Mode;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use serde::Serialize;
 
 /// Half of a 95 % interval, in standard errors.
@@ -159,9 +160,8 @@ pub fn text(summaries: &[Summary]) -> String {
 
 /// The parameters of a mode as a table.
 fn table(summary: &Summary) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["parameter", "spread %", "median error %", "95th percentile %", "covered"]);
+    let header = ["parameter", "spread %", "median error %", "95th percentile %", "covered"];
+    let mut table = markdown_table(&header, 1..5);
     for row in &summary.parameters {
         table.add_row([
             row.parameter.clone(),
@@ -170,11 +170,6 @@ fn table(summary: &Summary) -> Table {
             format!("{:.2}", row.p95_error_pct),
             format!("{} of {}", row.covered, row.intervals),
         ]);
-    }
-    for column in 1..5 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     table
 }
