@@ -5,12 +5,10 @@
 
 mod data;
 mod outcome;
-mod path;
 mod simulation;
 mod skeleton;
 
 pub use data::{Arm, ArmMuscle, Group};
 pub use outcome::{Outcome, Swings};
-pub use path::PathPolynomial;
 pub use simulation::{Activations, ArmError, Drive, Moment, run};
 pub use skeleton::{Joints, Segment, Skeleton};

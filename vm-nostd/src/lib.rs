@@ -112,6 +112,7 @@
 mod bank;
 mod beyond_paper;
 mod checksum;
+pub mod control;
 mod curves;
 mod domain;
 mod equations;

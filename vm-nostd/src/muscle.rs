@@ -40,7 +40,7 @@ pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
 #[derive(Clone, Copy, Debug)]
 pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     pub(crate) domain: Domain<S>,
-    recruitment: R::Coefficients,
+    pub(crate) recruitment: R::Coefficients,
     pub(crate) optimal_length: OptimalLength<S>,
     pub(crate) fibers: [Fiber<S>; N],
     pub(crate) parallel: Parallel<S>,

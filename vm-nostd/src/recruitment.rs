@@ -14,5 +14,6 @@ pub use acting_length::{ActingLength, EffectiveLength, FascicleLength};
 pub use continuous::NaturalContinuous;
 pub use discrete::NaturalDiscrete;
 pub use fes::IntramuscularFes;
+pub use lumped::LumpedState;
 pub use mode::{Moment, Recruitment, RecruitmentState, RecruitmentTick};
 pub use motor_units::{MotorUnits, UnitSizes};

@@ -106,6 +106,15 @@ impl<I: Iterator> Saved<I> {
         self.checked(value, 1, |value| valid(*value))
     }
 
+    /// A count below `most`.
+    pub(crate) fn count(&mut self, most: usize) -> Result<usize, RestoreError>
+    where
+        I: Iterator<Item: Into<u64>>,
+    {
+        let value = self.words.next().map(|word| word.into() as usize);
+        self.checked(value, 1, |&value| value < most)
+    }
+
     pub(crate) fn path<S: Scalar>(
         &mut self,
         range: &Range<S::PathLength>,

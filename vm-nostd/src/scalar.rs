@@ -171,6 +171,10 @@ pub trait Scalar:
         other: Self::PathLength,
         per_metre: &Self::Factor,
     ) -> Self;
+    /// Factor from numbers to path lengths: `metres` per 1.
+    fn path_factor(metres: f64) -> Self::Factor;
+    /// A path that is longer by a number times a factor; saturates.
+    fn lengthened(path: Self::PathLength, by: Self, factor: &Self::Factor) -> Self::PathLength;
     /// The word of a path length.
     fn path_bits(path: Self::PathLength) -> Self::Bits;
     /// The path length whose word is `bits`.

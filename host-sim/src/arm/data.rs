@@ -1,10 +1,10 @@
 //! The arm of `host-sim/data/arm.toml`.
 
-use super::path::PathPolynomial;
 use super::skeleton::{Joints, Segment, Skeleton};
 use crate::coefficients;
 use crate::reference::{Muscle, UnitSizes};
 use serde::Deserialize;
+use vm_nostd::control::{Action, AngleRange, ORDER, PathParams};
 
 const FILE: &str = include_str!("../../data/arm.toml");
 
@@ -28,7 +28,7 @@ pub struct ArmMuscle {
     /// Its group.
     pub group: Group,
     /// Its path.
-    pub path: PathPolynomial,
+    pub path: PathParams<2>,
     /// The muscle.
     pub muscle: Muscle,
 }
@@ -123,13 +123,26 @@ impl Arm {
 impl File {
     fn muscle_of(&self, table: &MuscleTable) -> ArmMuscle {
         let elements = coefficients::elements(&self.coefficients).expect("a published set");
-        let path = PathPolynomial {
+        let (linear, quadratic) = (metres(table.per_rad_cm), metres(table.per_rad2_cm));
+        let does = if table.name.ends_with("flexor") { Action::Flexes } else { Action::Extends };
+        let path = PathParams {
             length: table.path_cm * 1e-2,
             reference: self.reference_angles_deg.map(f64::to_radians),
-            linear: metres(table.per_rad_cm),
-            quadratic: metres(table.per_rad2_cm),
+            terms: [0, 1].map(|joint| {
+                let mut terms = [0.0; ORDER];
+                (terms[0], terms[1]) = (linear[joint], quadratic[joint]);
+                terms
+            }),
+            product: 0.0,
+            action: match table.group {
+                Group::Shoulder => [does, Action::None],
+                Group::Elbow => [Action::None, does],
+                Group::Biarticular => [does; 2],
+            },
         };
-        let (least, greatest) = (self.least_angles_deg, self.greatest_angles_deg);
+        let ranges = [0, 1].map(|joint| {
+            AngleRange::degrees(self.least_angles_deg[joint], self.greatest_angles_deg[joint])
+        });
         let fascicle_length = table.fascicle_length_cm * 1e-2;
         let fibers = self.fiber.iter().map(|fiber| {
             let mut fiber = coefficients::fiber(&fiber.preset, fiber.fraction).expect("a preset");
@@ -147,7 +160,7 @@ impl File {
                 L_ce0: fascicle_length,
                 // The tendon is slack at LrT of its optimal length.
                 L_se0: table.tendon_slack_length_cm * 1e-2 / elements.LrT,
-                L_mt_max: path.longest(least.map(f64::to_radians), greatest.map(f64::to_radians)),
+                L_mt_max: path.extremes(&ranges).1,
                 U_r: self.recruitment_saturation,
                 elements,
                 fibers: fibers.collect(),
@@ -173,22 +186,18 @@ mod tests {
         }
     }
 
+    /// Nothing of a path is refused but its range: not every posture is within the muscle's domain.
     #[test]
     fn moment_arms_have_the_sign_of_their_group() {
         let arm = Arm::built_in();
-        for ArmMuscle { name, group, path, .. } in &arm.muscles {
-            for angles in [arm.least_angles, [0.8, 1.6], arm.greatest_angles] {
-                let arms = path.moment_arms(angles);
-                let crossed = match group {
-                    Group::Shoulder => [true, false],
-                    Group::Elbow => [false, true],
-                    Group::Biarticular => [true, true],
-                };
-                for (arm, crosses) in arms.into_iter().zip(crossed) {
-                    assert_eq!(arm != 0.0, crosses, "{name}");
-                    assert!(!crosses || (arm > 0.0) == name.ends_with("flexor"), "{name}: {arm} m");
-                }
-            }
+        let ranges = [0, 1].map(|joint| AngleRange {
+            least: arm.least_angles[joint],
+            most: arm.greatest_angles[joint],
+        });
+        for ArmMuscle { name, path, .. } in &arm.muscles {
+            assert_eq!(path.validate(&ranges, (-10.0, 10.0)), Ok(()), "{name}");
+            let acts = path.action.iter().filter(|&&action| action != Action::None).count();
+            assert_eq!(acts, if name.starts_with("biarticular") { 2 } else { 1 }, "{name}");
         }
     }
 
@@ -207,13 +216,13 @@ mod tests {
                     let (least, most) = (arm.least_angles[joint], arm.greatest_angles[joint]);
                     least + share[joint] * (most - least)
                 });
-                longest = longest.max(path.length(angles));
-                let arms = path.moment_arms(angles);
+                longest = longest.max(path.length_at(angles));
+                let arms = path.moment_arms_at(angles);
                 for joint in [0, 1] {
                     let beside = |by: f64| {
                         let mut angles = angles;
                         angles[joint] += by;
-                        path.length(angles)
+                        path.length_at(angles)
                     };
                     let slope = (beside(1e-4) - beside(-1e-4)) / 2e-4;
                     assert!((arms[joint] + slope).abs() < 1e-9, "{name}: {} m", arms[joint]);

@@ -152,7 +152,7 @@ struct Simulation<'a> {
 
 impl<'a> Simulation<'a> {
     fn new(arm: &'a Arm, drive: &'a Drive) -> Result<Self, ArmError> {
-        let paths: Vec<f64> = arm.muscles.iter().map(|m| m.path.length(drive.start)).collect();
+        let paths: Vec<f64> = arm.muscles.iter().map(|m| m.path.length_at(drive.start)).collect();
         let running: Vec<_> = arm
             .muscles
             .iter()
@@ -243,7 +243,7 @@ impl<'a> Simulation<'a> {
     ) -> Result<(Vec<f64>, Vec<f64>, Status), ArmError> {
         let angles = [state[0], state[1]];
         let paths: Vec<f64> =
-            self.arm.muscles.iter().map(|muscle| muscle.path.length(angles)).collect();
+            self.arm.muscles.iter().map(|muscle| muscle.path.length_at(angles)).collect();
         let mut status = Status::empty();
         let mut forces = Vec::with_capacity(paths.len());
         for ((running, &path_length), muscle) in
@@ -280,7 +280,7 @@ impl System<f64, Vector4<f64>> for Pulled<'_> {
         let mut torques = [0.0; 2];
         for ((muscle, start), end) in self.muscles.iter().zip(self.start).zip(self.end) {
             let force = start + share * (end - start);
-            let arms = muscle.path.moment_arms(angles);
+            let arms = muscle.path.moment_arms_at(angles);
             torques[0] += force * arms[0];
             torques[1] += force * arms[1];
         }

@@ -95,4 +95,16 @@ impl<S: Scalar> ActivationCurve<S> {
         }
         (self.exponent * (frequency * self.per_scale).ln()).weibull().0
     }
+
+    /// Af at another length, at the frequency that makes it `value` here:
+    /// x' = n_f' (x/n_f - ln(n_f'/n_f)) with x = ln(-ln(1 - Af)).
+    pub(crate) fn moved(&self, value: S, to: &Self) -> S {
+        if value <= S::ZERO {
+            return S::ZERO;
+        }
+        let left = (S::ONE - value).max(S::LEAST);
+        let x = (-left.ln()).max(S::LEAST).ln();
+        let ratio = to.exponent.ratio(self.exponent);
+        (x * ratio - to.exponent * ratio.ln()).weibull().0
+    }
 }

@@ -51,6 +51,13 @@ struct Unit<S: Scalar> {
 summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
 impl<S: Scalar, const N: usize> Coefficients<S, N> {
+    /// Recruited share of the muscle of each type.
+    pub(crate) fn weights(&self, state: &LumpedState<S, N>) -> [S; N] {
+        core::array::from_fn(|i| {
+            self.units[i].fraction * S::of(state.fibers[i].effective_frequency)
+        })
+    }
+
     /// f_env of the first type, f0.5.
     fn first_frequency(&self, stimulation_frequency: S::Quantity) -> S {
         self.units.first().map_or(S::ZERO, |unit| {

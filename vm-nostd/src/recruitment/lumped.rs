@@ -15,7 +15,7 @@ pub struct LumpedState<S: Scalar, const N: usize> {
     pub(crate) shared: S::LagState,
     pub(super) fibers: [FiberState<S>; N],
     /// Af of each type.
-    pub(super) activities: [Activity<S>; N],
+    pub(crate) activities: [Activity<S>; N],
 }
 
 /// What each fibre type has of its own.

@@ -212,6 +212,12 @@ impl Scalar for Fixed {
     fn path_difference(path: I23F9, other: I23F9, per_metre: &Factor) -> Self {
         Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
     }
+    fn path_factor(metres: f64) -> Factor {
+        Factor::new(metres * PATH_UNITS / UNITS)
+    }
+    fn lengthened(path: I23F9, by: Self, factor: &Factor) -> I23F9 {
+        path.saturating_add(I23F9::from_bits(factor.times(by.to_bits())))
+    }
     fn path_bits(path: I23F9) -> u32 {
         path.to_bits() as u32
     }

@@ -183,6 +183,12 @@ macro_rules! float {
             fn path_difference(path: Self, other: Self, per_metre: &Self) -> Self {
                 (path - other) * per_metre
             }
+            fn path_factor(metres: f64) -> Self {
+                metres as Self
+            }
+            fn lengthened(path: Self, by: Self, factor: &Self) -> Self {
+                path + by * factor
+            }
             fn path_bits(path: Self) -> Self::Bits {
                 path.to_bits()
             }

@@ -1,0 +1,168 @@
+//! Envelope of an EMG: rectified, low-passed, normalised, delayed, shaped.
+//!
+//! The samples' magnitude passes two equal lags whose gain together is 1/√2 at the cutoff,
+//! T = √(√2 - 1)/(2π f_c). The result is normalised between rest and maximal voluntary contraction,
+//! delayed by the electromechanical delay, and shaped to activation:
+//!
+//! a = (exp(A u) - 1)/(exp(A) - 1), and a = u for A = 0
+//!
+//! (Buchanan, Lloyd, Manal & Besier, J. Appl. Biomech. 20 (2004) 367-395).
+
+use crate::checksum::{Checksum, Summed};
+use crate::tick::range::Range;
+use crate::error::{ParameterError, within};
+use crate::tick::lag::Lag;
+use crate::tick::range::share;
+use crate::scalar::Scalar;
+use crate::scalar::float::square_root;
+use crate::saved::{RestoreError, Saved};
+use crate::tick::time_step::TimeStep;
+
+/// Parameters of an envelope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EnvelopeParams {
+    /// Mean rectified EMG at rest, mV; 0 to 10. More ignores more noise, and weak contractions.
+    pub rest: f64,
+    /// Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 more than at rest, to 10.
+    pub maximal: f64,
+    /// Cutoff f_c, Hz; 0.5 to 20. Higher follows faster and lets more ripple through.
+    pub cutoff_frequency: f64,
+    /// Electromechanical delay, s; 0 to the capacity of the delay line. It moves the command by as
+    /// much: 0 for the fastest prosthesis, 0.01 to 0.1 to predict a biological joint.
+    pub delay: f64,
+    /// Shape A; -3 to 0. More negative raises weak contractions; 0 leaves them.
+    pub shape: f64,
+}
+
+impl EnvelopeParams {
+    /// Validates for a delay line of so many ticks; the error has field, value and limit.
+    pub fn validate(&self, step: TimeStep, line: usize) -> Result<(), ParameterError> {
+        within("envelope.rest", self.rest, 0.0, 10.0)?;
+        within("envelope.maximal", self.maximal, self.rest + 1e-3, 10.0)?;
+        within("envelope.cutoff_frequency", self.cutoff_frequency, 0.5, 20.0)?;
+        within("envelope.delay", self.delay, 0.0, line as f64 * step.seconds())?;
+        within("envelope.shape", self.shape, -3.0, 0.0)
+    }
+}
+
+/// An envelope with a delay line of at most `D` ticks.
+#[derive(Clone, Copy, Debug)]
+pub struct Envelope<S: Scalar, const D: usize> {
+    lag: Lag<S>,
+    /// 1/(maximal - rest), per mV, and rest in that unit.
+    per_range: S::Factor,
+    rest: S,
+    greatest: S,
+    ticks: usize,
+    /// A, and 1/(exp(A) - 1).
+    shape: Option<(S, S)>,
+}
+
+impl<S: Scalar, const D: usize> Summed for Envelope<S, D> {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { lag, per_range, rest, greatest, ticks, shape } = self;
+        greatest.sum(checksum);
+        lag.sum(checksum);
+        per_range.sum(checksum);
+        rest.sum(checksum);
+        ticks.sum(checksum);
+        let (exponent, factor) = shape.unwrap_or((S::ZERO, S::ZERO));
+        exponent.sum(checksum);
+        factor.sum(checksum);
+    }
+}
+
+/// State of an envelope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvelopeState<S: Scalar, const D: usize> {
+    lags: [S::LagState; 2],
+    /// The last normalised values; `next` is the oldest.
+    line: [S; D],
+    next: usize,
+}
+
+impl<S: Scalar, const D: usize> EnvelopeState<S, D> {
+    /// Number of [`words`](Self::words).
+    pub const WORDS: usize = 2 * S::SLOW_WORDS + D + 1;
+
+    /// The bits.
+    pub fn words(&self) -> impl Iterator<Item = S::Bits> {
+        let lags = self.lags.into_iter().flat_map(S::lag_state_words);
+        let next = S::Bits::from(self.next as u32);
+        lags.chain(self.line.into_iter().map(S::to_bits)).chain(core::iter::once(next))
+    }
+}
+
+/// Greatest rectified EMG, in ranges from rest to maximal: artefacts are clipped to it.
+const GREATEST: f64 = 8.0;
+
+impl<S: Scalar, const D: usize> Envelope<S, D> {
+    /// Builds an envelope for a time step; the error has field, value and limit.
+    pub fn build(params: &EnvelopeParams, step: TimeStep) -> Result<Self, ParameterError> {
+        params.validate(step, D)?;
+        let range = params.maximal - params.rest;
+        let pair = square_root(square_root(2.0) - 1.0);
+        let time = pair / (2.0 * core::f64::consts::PI * params.cutoff_frequency);
+        let shape = params.shape;
+        Ok(Self {
+            lag: Lag::new(time, step),
+            per_range: S::per_quantity(1.0 / range),
+            rest: S::from_f64(params.rest / range),
+            greatest: S::from_f64(GREATEST),
+            ticks: (params.delay / step.seconds() + 0.5) as usize,
+            shape: (shape < -1e-6)
+                .then(|| (S::from_f64(shape), S::from_f64(1.0 / (Scalar::exp(shape) - 1.0)))),
+        })
+    }
+
+    /// State after a long rest.
+    pub fn rested(&self) -> EnvelopeState<S, D> {
+        EnvelopeState { lags: [self.rest.lag_state(); 2], line: [S::ZERO; D], next: 0 }
+    }
+
+    /// Takes a sample (mV) and returns the activation, 0..1, and whether the sample was not finite
+    /// (then the envelope decays as at rest) or clipped to 8 times the normalisation range.
+    pub fn step(&self, state: &mut EnvelopeState<S, D>, sample: S::Quantity) -> (S, bool) {
+        let finite = S::quantity_is_finite(sample);
+        let magnitude =
+            if finite { S::of_quantity(sample, &self.per_range).abs() } else { self.rest };
+        let clipped = magnitude > self.greatest;
+        let magnitude = magnitude.min(self.greatest);
+        let [first, second] = state.lags;
+        let first = self.lag.at_end(first, magnitude);
+        let second = self.lag.at_end(second, S::of(first));
+        state.lags = [first, second];
+        let now = (S::of(second) - self.rest).max(S::ZERO).min(S::ONE);
+        let delayed = self.delayed(state, now);
+        let activation = match self.shape {
+            None => delayed,
+            Some((exponent, factor)) => ((exponent * delayed).exp() - S::ONE) * factor,
+        };
+        (activation.max(S::ZERO).min(S::ONE), clipped || !finite)
+    }
+
+    fn delayed(&self, state: &mut EnvelopeState<S, D>, now: S) -> S {
+        let Some(place) = state.line.get_mut(state.next) else { return now };
+        let oldest = core::mem::replace(place, now);
+        state.next = if state.next + 1 < self.ticks { state.next + 1 } else { 0 };
+        if self.ticks == 0 { now } else { oldest }
+    }
+
+    /// The state whose words come next.
+    pub(super) fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        saved: &mut Saved<I>,
+    ) -> Result<EnvelopeState<S, D>, RestoreError> {
+        let mut state = self.rested();
+        let range = Range { least: S::ZERO, most: self.greatest };
+        for lag in &mut state.lags {
+            *lag = saved.lag_state(&range)?;
+        }
+        for value in &mut state.line {
+            *value = saved.number(|value| share::<S>().contains(value))?;
+        }
+        state.next = saved.count(self.ticks.max(1))?;
+        Ok(state)
+    }
+}
