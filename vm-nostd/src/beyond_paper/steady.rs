@@ -171,6 +171,30 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, self.rounding, path_length, stimulation_frequency)
     }
 
+    /// Activation whose steady force (F0) is nearest to the wanted one, from a single evaluation: 0 or
+    /// 1 with [`Status::FORCE_UNREACHABLE`] where no activation holds it at the length that the
+    /// fascicles would have. For controllers, which ask in every tick; tendons as long as five
+    /// fascicles may have other equilibria, which are not looked for.
+    pub fn nearest_activation(
+        &self,
+        wanted: S,
+        path_length: S::PathLength,
+        stimulation_frequency: S::Quantity,
+    ) -> (S, Status) {
+        let input = Input { activation: S::ONE, path_length, stimulation_frequency };
+        let (input, mut status) = self.domain.admit(input, self.domain.path_length.most);
+        let wanted = wanted.max(S::ZERO);
+        let extension = self.tendon_inverse.extension(wanted);
+        let balance = self.balance(&input, extension);
+        let missing = wanted - balance.passive;
+        // No force is held by no activation, however slack.
+        let unreachable = missing < -self.rounding && wanted > S::ZERO
+            || missing > balance.active + self.rounding;
+        status.set(Status::FORCE_UNREACHABLE, unreachable);
+        let share = missing.max(S::ZERO).ratio(balance.active.max(self.rounding));
+        (share.min(S::ONE), status)
+    }
+
     /// Steady state at a force (F0); one outside the reachable range by up to `rounding` counts as
     /// reachable.
     fn holding(

@@ -9,13 +9,13 @@
 //! (Buchanan, Lloyd, Manal & Besier, J. Appl. Biomech. 20 (2004) 367-395).
 
 use crate::checksum::{Checksum, Summed};
-use crate::tick::range::Range;
 use crate::error::{ParameterError, within};
-use crate::tick::lag::Lag;
-use crate::tick::range::share;
+use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::scalar::float::square_root;
-use crate::saved::{RestoreError, Saved};
+use crate::tick::lag::Lag;
+use crate::tick::range::Range;
+use crate::tick::range::share;
 use crate::tick::time_step::TimeStep;
 
 /// Parameters of an envelope.

@@ -30,8 +30,8 @@
 use super::joint::JointMuscle;
 use super::path::{Action, AngleRange, ORDER, PathParams, RADIANS};
 use crate::params::class::Class;
-use crate::params::{FiberParams, MuscleParams};
 use crate::params::presets::human_vm4::{ELEMENTS, FAST, SLOW};
+use crate::params::{FiberParams, MuscleParams};
 
 /// A joint with a flexor and an extensor.
 #[derive(Clone, Copy, Debug, PartialEq)]

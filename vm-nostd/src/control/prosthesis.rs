@@ -10,16 +10,16 @@ use super::limit::{CommandLimits, Limited, Limiter};
 use super::path::{AngleRange, PathParams};
 use super::saved::{Parts, fingerprint};
 use crate::checksum::summed;
-use crate::status::Status;
-use crate::tick::range::Range;
 use crate::error::ParameterError;
 use crate::io::Input;
 use crate::muscle::ContinuousMuscle;
 use crate::params::MuscleParams;
 use crate::recruitment::NaturalContinuous;
-use crate::scalar::Scalar;
 use crate::saved::{RestoreError, Saved};
+use crate::scalar::Scalar;
 use crate::state::State;
+use crate::status::Status;
+use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
 bitflags::bitflags! {

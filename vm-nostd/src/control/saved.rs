@@ -1,8 +1,8 @@
 //! Saved states that are made of several parts.
 
 use crate::checksum::{Checksum, Summed};
-use crate::scalar::Scalar;
 use crate::saved::RestoreError;
+use crate::scalar::Scalar;
 
 /// Fingerprint of what a state belongs to: a number for its kind, its arithmetic and coefficients.
 pub(super) fn fingerprint<S: Scalar, T: Summed>(kind: u32, of: &T) -> u32 {

@@ -61,6 +61,11 @@ impl<S: Scalar> Sag<S> {
         Range { least: a.min(b), most: a.max(b) }
     }
 
+    /// S of a type that has fired, or not, for long.
+    pub(crate) fn held(&self, firing: bool) -> S {
+        if firing { self.firing_level } else { self.resting_level }
+    }
+
     /// S at the tick's end if the type fired for a `share` (0..1) of the tick.
     pub(crate) fn advance(&self, sag: S::LagState, share: S) -> S::LagState {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;

@@ -52,6 +52,23 @@ pub struct Coefficients<S: Scalar, const N: usize> {
 
 summed!([S: Scalar, const N: usize] Coefficients<S, N> { rise, fall, firing, units });
 
+impl<S: Scalar, const N: usize> Coefficients<S, N> {
+    /// Weight U_eff W_i and firing frequency (f0.5) of each type at an activation held for long.
+    pub(crate) fn held(&self, activation: S) -> [(S, S); N] {
+        let above = |unit: &Firing<S>| (activation - unit.threshold).max(S::ZERO);
+        let sum = self.units.iter().fold(S::ZERO, |sum, unit| sum + above(unit));
+        let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
+        self.units
+            .each_ref()
+            .map(|unit| (activation * above(unit).scaled(&per_sum), unit.frequency(activation)))
+    }
+
+    /// S of a type that fires at a frequency (f0.5) for long.
+    pub(crate) fn held_sag(&self, fiber: &Fiber<S>, frequency: S) -> S {
+        fiber.sag.held(frequency > self.firing)
+    }
+}
+
 impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     const PASSIVE_ONLY_PULLS: bool = false;
 

@@ -1,0 +1,107 @@
+//! From a torque to the stimulation of two antagonists: the model's inverse, in four steps.
+//!
+//! Torque -> forces (moment arms, co-contraction) -> rested forces (fitness, gain) -> steady
+//! activations ([`SteadyFes`]) -> stimulation (the lead that cancels excitation).
+
+use super::joint::{Joint, Posture};
+use super::lead::{Lead, LeadState};
+use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
+use crate::beyond_paper::steady::SteadyFes;
+use crate::checksum::{Checksum, Summed, summed};
+use crate::scalar::Scalar;
+use crate::status::Status;
+
+/// What one muscle needs for the inverse.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inverse<S: Scalar, const N: usize> {
+    pub(super) steady: SteadyFes<S, N>,
+    pub(super) lead: Lead<S>,
+    pub(super) fatigue: Option<Fatigue<S>>,
+    /// Fitness that is made up for at most.
+    pub(super) least_fitness: S,
+}
+
+/// `SteadyFes` follows from what the joint and the parameters' checksum hold already.
+impl<S: Scalar, const N: usize> Summed for Inverse<S, N> {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { steady: _, lead, fatigue, least_fitness } = self;
+        lead.sum(checksum);
+        if let Some(fatigue) = fatigue {
+            fatigue.sum(checksum);
+        }
+        least_fitness.sum(checksum);
+    }
+}
+
+/// State of the inverse of one muscle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct InverseState<S: Scalar> {
+    pub(super) lead: LeadState<S>,
+    pub(super) fatigue: Option<FatigueState<S>>,
+}
+
+/// Torques of the antagonists.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares<S> {
+    /// Of each muscle, with its sign.
+    pub(super) torques: [S; 2],
+}
+
+/// The coefficients that do not belong to a muscle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CoContraction<S> {
+    /// Torque that each muscle makes against the other.
+    pub(super) torque: S,
+}
+
+summed!([S: Scalar] CoContraction<S> { torque });
+
+impl<S: Scalar> CoContraction<S> {
+    /// Flexor and extensor that together make a torque.
+    pub(super) fn shares(&self, torque: S) -> Shares<S> {
+        let flexion = torque.max(S::ZERO) + self.torque;
+        let extension = torque.min(S::ZERO) - self.torque;
+        Shares { torques: [flexion, extension] }
+    }
+}
+
+/// Stimulation of one muscle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stimulated<S> {
+    /// 0..1.
+    pub(super) activation: S,
+    pub(super) status: Status,
+    /// No activation holds the torque: it is the greatest.
+    pub(super) at_most: bool,
+    /// The lead asked for less than 0 or more than 1.
+    pub(super) lead_clipped: bool,
+}
+
+impl<S: Scalar, const N: usize> Inverse<S, N> {
+    /// The stimulation with which muscle `index` makes a torque of its own sign, at a gain.
+    pub(super) fn step(
+        &self,
+        state: &mut InverseState<S>,
+        (joint, posture, index): (&Joint<S, 1, 2>, &Posture<S, 1, 2>, usize),
+        torque: S,
+        gain: S,
+        frequency: S::Quantity,
+    ) -> Stimulated<S> {
+        let fitness = state.fatigue.map_or(S::ONE, |fatigue| fatigue.fitness());
+        let strength = gain * fitness.max(self.least_fitness);
+        let force = joint.force_for(posture, index, 0, torque).ratio(strength.max(S::LEAST));
+        let path = posture.muscles[index].path_length;
+        let (wanted, status) = self.steady.nearest_activation(force, path, frequency);
+        let ahead = self.lead.step(&mut state.lead, wanted);
+        let activation = ahead.max(S::ZERO).min(S::ONE);
+        if let (Some(fatigue), Some(tired)) = (&self.fatigue, &mut state.fatigue) {
+            fatigue.advance(tired, activation, frequency);
+        }
+        Stimulated {
+            activation,
+            status,
+            at_most: wanted >= S::ONE,
+            lead_clipped: activation != ahead,
+        }
+    }
+}

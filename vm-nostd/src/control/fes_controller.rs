@@ -1,0 +1,464 @@
+//! FES controller of a joint's angle or torque: feed-forward by the model, feedback by PI.
+//!
+//! Each tick: target -> torque of the motion ([`LimbParams`]) plus PI -> the model's inverse ->
+//! activation of flexor and extensor -> pulse. Nothing in it can fail, and no loop depends on data.
+
+use super::feed_forward::{CoContraction, Inverse, InverseState};
+use super::fes_params::{FesControllerParams, Measured, Modulation};
+use super::gain_estimate::{GainEstimate, Learnt};
+use super::joint::{Joint, JointError, JointMuscle, TORQUE_UNIT};
+use super::lead::{Lead, LeadParams, LeadState};
+use super::limb::Limb;
+use super::pi::{Pi, Saturated};
+use super::saved::{Parts, fingerprint};
+use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
+use crate::beyond_paper::recruitment_curve::{Pulse, PulseStatus, RecruitmentCurve};
+use crate::beyond_paper::steady::SteadyFes;
+use crate::checksum::{Checksum, Summed};
+use crate::error::ParameterError;
+use crate::saved::{RestoreError, Saved};
+use crate::scalar::Scalar;
+use crate::status::Status;
+use crate::tick::lag::Lag;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
+
+bitflags::bitflags! {
+    /// What a tick of a controller had to saturate.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub struct ControlStatus: u16 {
+        /// The measured value was not finite: the last one was kept.
+        const MEASURED_NOT_FINITE = 1 << 0;
+        /// The target was not finite (the last angle was kept, without motion) or outside its range
+        /// (clipped).
+        const TARGET_INVALID = 1 << 1;
+        /// The measured angle was outside the joint's range and was clipped.
+        const ANGLE_CLIPPED = 1 << 2;
+        /// The torque was clipped to its limits.
+        const TORQUE_LIMITED = 1 << 3;
+        /// No activation makes the torque: a muscle is stimulated fully.
+        const UNREACHABLE = 1 << 4;
+        /// The lead asked for stimulation outside of 0..1.
+        const LEAD_CLIPPED = 1 << 5;
+        /// The gain would have left its range: the update was refused.
+        const GAIN_REFUSED = 1 << 6;
+        /// The gain is frozen: too little torque, or saturated.
+        const GAIN_FROZEN = 1 << 7;
+        /// No pulse recruits what was asked for.
+        const PULSE_UNREACHABLE = 1 << 8;
+    }
+}
+
+/// What is wanted, in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<S: Scalar> {
+    /// Angle, rad.
+    pub angle: S,
+    /// Its velocity, rad/s.
+    pub velocity: S,
+    /// Its acceleration, rad/s².
+    pub acceleration: S,
+    /// Torque, N m, in addition to that of the motion; with [`Measured::Torque`] the only one.
+    pub torque: S::Quantity,
+}
+
+/// What is measured, in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensors<S: Scalar> {
+    /// Angle, rad.
+    pub angle: S,
+    /// Torque of the muscles, N m; only used with [`Measured::Torque`].
+    pub torque: S::Quantity,
+}
+
+/// What is commanded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FesCommand<S: Scalar> {
+    /// Stimulation of flexor and extensor, 0..1.
+    pub activations: [S; 2],
+    /// The pulse that recruits it.
+    pub pulses: [Pulse<S>; 2],
+    /// Torque that was asked of the model's inverse, N m.
+    pub torque: S::Quantity,
+    /// Estimated gain of the muscles.
+    pub gain: S,
+    /// Flags of the inverse.
+    pub muscles: [Status; 2],
+    /// What had to be saturated.
+    pub status: ControlStatus,
+}
+
+/// A controller of a joint with a flexor and an extensor.
+#[derive(Clone, Copy, Debug)]
+pub struct FesController<S: Scalar, const N: usize> {
+    range: Range<S>,
+    joint: Joint<S, 1, 2>,
+    limb: Limb<S>,
+    inverses: [Inverse<S, N>; 2],
+    electrodes: [Electrode<S>; 2],
+    cocontraction: CoContraction<S>,
+    feedback: Pi<S>,
+    of_torque: bool,
+    expected: Lag<S>,
+    gain: Option<GainEstimate<S>>,
+    torque: Range<S>,
+    per_torque: S::Factor,
+    frequency: S::Quantity,
+    most_motion: S,
+}
+
+/// A recruitment curve, and the half of the pulse that is constant.
+#[derive(Clone, Copy, Debug)]
+struct Electrode<S: Scalar> {
+    curve: RecruitmentCurve<S>,
+    by_width: bool,
+    constant: S::Quantity,
+}
+
+impl<S: Scalar> Summed for Electrode<S> {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { curve, by_width, constant } = self;
+        curve.sum(checksum);
+        u8::from(*by_width).sum(checksum);
+        constant.sum(checksum);
+    }
+}
+
+impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
+    fn sum(&self, checksum: &mut Checksum) {
+        let Self { range, joint, limb, inverses, electrodes, cocontraction, .. } = self;
+        range.sum(checksum);
+        joint.sum(checksum);
+        limb.sum(checksum);
+        inverses.sum(checksum);
+        electrodes.sum(checksum);
+        cocontraction.sum(checksum);
+        let Self { feedback, of_torque, expected, gain, torque, per_torque, frequency, .. } = self;
+        feedback.sum(checksum);
+        u8::from(*of_torque).sum(checksum);
+        expected.sum(checksum);
+        if let Some(gain) = gain {
+            gain.sum(checksum);
+        }
+        torque.sum(checksum);
+        per_torque.sum(checksum);
+        frequency.sum(checksum);
+        self.most_motion.sum(checksum);
+    }
+}
+
+/// Everything of a controller that changes from tick to tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FesControllerState<S: Scalar> {
+    /// Last target and measured angle, rad; measured torque, in its unit.
+    target: S,
+    angle: S,
+    measured: S,
+    /// What the feedback expects to be measured.
+    expected: S::LagState,
+    integral: S::LagState,
+    gain: S::LagState,
+    saturated: Saturated,
+    inverses: [InverseState<S>; 2],
+}
+
+impl<S: Scalar> FesControllerState<S> {
+    const OWN: usize = 1 + 4 + 3 * S::SLOW_WORDS + 2 * LeadState::<S>::WORDS;
+    /// Words of a saved state without fatigue; [`FesController::saved_words`] has those of a
+    /// controller.
+    pub const LEAST_SAVED_WORDS: usize = Self::OWN;
+
+    /// Estimated gain.
+    pub fn gain(&self) -> S {
+        S::of(self.gain)
+    }
+}
+
+/// Distinguishes saved controllers: no mode has this number.
+const CONTROLLER: u32 = 0x101;
+/// Greatest velocity (rad/s) and acceleration (rad/s²) of a target.
+const MOST_MOTION: f64 = 100.0;
+
+impl<S: Scalar, const N: usize> FesController<S, N> {
+    /// Builds a controller for a time step; the error has the muscle's index, field, value, limit.
+    pub fn build(params: &FesControllerParams<N>, step: TimeStep) -> Result<Self, JointError> {
+        let of = |muscle: usize| move |error| JointError { muscle: Some(muscle), error };
+        let own = |error: ParameterError| JointError { muscle: None, error };
+        params.validate_own().map_err(own)?;
+        let placed = [0, 1].map(|i| JointMuscle::new(&params.muscles[i], params.paths[i]));
+        let joint = Joint::build(&[params.range], &placed)?;
+        let frequency = params.stimulation_frequency;
+        let inverse = |i: usize| -> Result<Inverse<S, N>, ParameterError> {
+            let muscle = &params.muscles[i];
+            let lead = LeadParams::of_muscle(muscle, frequency, params.lead_filter_time);
+            let fatigue = params.fatigue[i].map(|fatigue| Fatigue::build(&fatigue, step));
+            Ok(Inverse {
+                steady: SteadyFes::build(muscle)?,
+                lead: Lead::build(&lead, step)?,
+                fatigue: fatigue.transpose()?,
+                least_fitness: S::from_f64(params.least_fitness),
+            })
+        };
+        let electrode = |i: usize| -> Result<Electrode<S>, ParameterError> {
+            let (by_width, constant) = match params.modulation[i] {
+                Modulation::Width { amplitude } => (true, amplitude * 1e3),
+                Modulation::Amplitude { width } => (false, width * 1e6),
+            };
+            Ok(Electrode {
+                curve: RecruitmentCurve::build(&params.electrodes[i])?,
+                by_width,
+                constant: S::quantity(constant),
+            })
+        };
+        let of_torque = params.measured == Measured::Torque;
+        let error_unit = if of_torque { TORQUE_UNIT } else { 1.0 };
+        let gain = params.gain.map(|gain| GainEstimate::build(&gain, TORQUE_UNIT, step));
+        Ok(Self {
+            range: Range::new((params.range.least, params.range.most), S::from_f64),
+            joint,
+            limb: Limb::new(&params.limb, &params.range, TORQUE_UNIT).map_err(own)?,
+            inverses: [inverse(0).map_err(of(0))?, inverse(1).map_err(of(1))?],
+            electrodes: [electrode(0).map_err(of(0))?, electrode(1).map_err(of(1))?],
+            cocontraction: CoContraction {
+                torque: S::from_f64(params.cocontraction / TORQUE_UNIT),
+            },
+            feedback: Pi::build(&params.feedback, TORQUE_UNIT, error_unit, step).map_err(own)?,
+            of_torque,
+            expected: Lag::new(params.expected_lag, step),
+            gain: gain.transpose().map_err(own)?,
+            torque: Range::new(
+                (params.torque.0 / TORQUE_UNIT, params.torque.1 / TORQUE_UNIT),
+                S::from_f64,
+            ),
+            per_torque: S::per_quantity(1.0 / TORQUE_UNIT),
+            frequency: S::quantity(frequency),
+            most_motion: S::from_f64(MOST_MOTION),
+        })
+    }
+
+    /// A controller that starts at an angle (rad), clipped to the joint's range, with rested muscles
+    /// and a gain of 1.
+    pub fn start(&self, angle: S) -> FesControllerState<S> {
+        let (angle, _) = self.range.clip(angle);
+        let expected = if self.of_torque { S::ZERO } else { angle };
+        FesControllerState {
+            target: angle,
+            angle,
+            measured: S::ZERO,
+            expected: expected.lag_state(),
+            integral: S::ZERO.lag_state(),
+            gain: S::ONE.lag_state(),
+            saturated: Saturated::default(),
+            inverses: self.inverses.each_ref().map(|inverse| InverseState {
+                lead: inverse.lead.rested(),
+                fatigue: inverse.fatigue.map(|fatigue| fatigue.rested()),
+            }),
+        }
+    }
+
+    /// Steps one tick: cannot fail, no loop depends on data.
+    pub fn step(
+        &self,
+        state: &mut FesControllerState<S>,
+        target: Target<S>,
+        sensors: Sensors<S>,
+    ) -> FesCommand<S> {
+        let mut status = ControlStatus::empty();
+        let target = self.admit_target(state, target, &mut status);
+        self.admit_sensors(state, sensors, &mut status);
+
+        let asked = S::of_quantity(target.torque, &self.per_torque);
+        let motion = self.limb.torque(target.angle, target.velocity, target.acceleration);
+        let (forward, wanted, measured) = if self.of_torque {
+            (asked, asked, state.measured)
+        } else {
+            (motion + asked, target.angle, state.angle)
+        };
+        // The joint follows late: feedback compares with what is to be measured now.
+        state.expected = self.expected.at_end(state.expected, wanted);
+        let error = S::of(state.expected) - measured;
+        let fed_back = self.feedback.step(&mut state.integral, error, state.saturated);
+        let (torque, limited) = self.torque.clip(forward + fed_back);
+        status.set(ControlStatus::TORQUE_LIMITED, limited);
+
+        let posture = self.joint.posture([state.angle]);
+        let shares = self.cocontraction.shares(torque);
+        let gain = S::of(state.gain);
+        let mut activations = [S::ZERO; 2];
+        let mut pulses = [self.pulse(0, S::ZERO).0; 2];
+        let mut muscles = [Status::empty(); 2];
+        let mut at_most = [false; 2];
+        for i in 0..2 {
+            let place = (&self.joint, &posture, i);
+            let inverse = &mut state.inverses[i];
+            let stimulated =
+                self.inverses[i].step(inverse, place, shares.torques[i], gain, self.frequency);
+            activations[i] = stimulated.activation;
+            muscles[i] = stimulated.status;
+            at_most[i] = stimulated.at_most;
+            if stimulated.at_most {
+                status |= ControlStatus::UNREACHABLE;
+            }
+            if stimulated.lead_clipped {
+                status |= ControlStatus::LEAD_CLIPPED;
+            }
+            let (pulse, reached) = self.pulse(i, stimulated.activation);
+            pulses[i] = pulse;
+            if !reached {
+                status |= ControlStatus::PULSE_UNREACHABLE;
+            }
+        }
+        state.saturated = Saturated {
+            above: at_most[0] || (limited && torque >= self.torque.most),
+            below: at_most[1] || (limited && torque <= self.torque.least),
+        };
+        status |= self.learn(state, torque, fed_back, limited);
+        FesCommand {
+            activations,
+            pulses,
+            torque: self.joint.quantity(torque),
+            gain: S::of(state.gain),
+            muscles,
+            status,
+        }
+    }
+
+    fn admit_target(
+        &self,
+        state: &mut FesControllerState<S>,
+        target: Target<S>,
+        status: &mut ControlStatus,
+    ) -> Target<S> {
+        let finite =
+            [target.angle, target.velocity, target.acceleration].into_iter().all(S::is_finite)
+                && S::quantity_is_finite(target.torque);
+        let target = if finite {
+            target
+        } else {
+            let torque = self.joint.quantity(S::ZERO);
+            Target { angle: state.target, velocity: S::ZERO, acceleration: S::ZERO, torque }
+        };
+        let (angle, clipped) = self.range.clip(target.angle);
+        let most = self.most_motion;
+        let [velocity, acceleration] =
+            [target.velocity, target.acceleration].map(|value| value.max(-most).min(most));
+        let same = velocity == target.velocity && acceleration == target.acceleration;
+        status.set(ControlStatus::TARGET_INVALID, !finite || clipped || !same);
+        state.target = angle;
+        Target { angle, velocity, acceleration, torque: target.torque }
+    }
+
+    fn admit_sensors(
+        &self,
+        state: &mut FesControllerState<S>,
+        sensors: Sensors<S>,
+        status: &mut ControlStatus,
+    ) {
+        let mut lost = !sensors.angle.is_finite();
+        if !lost {
+            let (angle, clipped) = self.range.clip(sensors.angle);
+            status.set(ControlStatus::ANGLE_CLIPPED, clipped);
+            state.angle = angle;
+        }
+        if self.of_torque {
+            if S::quantity_is_finite(sensors.torque) {
+                state.measured = S::of_quantity(sensors.torque, &self.per_torque);
+            } else {
+                lost = true;
+            }
+        }
+        status.set(ControlStatus::MEASURED_NOT_FINITE, lost);
+    }
+
+    fn pulse(&self, muscle: usize, activation: S) -> (Pulse<S>, bool) {
+        let Electrode { curve, by_width, constant } = &self.electrodes[muscle];
+        let (pulse, status) = if *by_width {
+            let (width, status) = curve.width_for(activation, *constant);
+            (Pulse { amplitude: *constant, width }, status)
+        } else {
+            let (amplitude, status) = curve.amplitude_for(activation, *constant);
+            (Pulse { amplitude, width: *constant }, status)
+        };
+        (pulse, !status.contains(PulseStatus::UNREACHABLE))
+    }
+
+    fn learn(
+        &self,
+        state: &mut FesControllerState<S>,
+        torque: S,
+        fed_back: S,
+        limited: bool,
+    ) -> ControlStatus {
+        let Some(estimate) = &self.gain else { return ControlStatus::empty() };
+        let saturated = limited || state.saturated.above || state.saturated.below;
+        match estimate.step(&mut state.gain, torque, fed_back, saturated) {
+            Learnt::Moved => ControlStatus::empty(),
+            Learnt::Frozen => ControlStatus::GAIN_FROZEN,
+            Learnt::Refused => ControlStatus::GAIN_REFUSED,
+        }
+    }
+
+    /// Words of a saved state of this controller.
+    pub fn saved_words(&self) -> usize {
+        let tired = self.inverses.iter().filter(|inverse| inverse.fatigue.is_some()).count();
+        FesControllerState::<S>::OWN + tired * FatigueState::<S>::SAVED_WORDS
+    }
+
+    /// The words of a saved state: a fingerprint of the controller, and the state.
+    pub fn save(&self, state: &FesControllerState<S>) -> impl Iterator<Item = S::Bits> {
+        let Saturated { above, below } = state.saturated;
+        let saturated = u32::from(above) + 2 * u32::from(below);
+        let own = [state.target, state.angle, state.measured].map(S::to_bits);
+        let slow = [state.expected, state.integral, state.gain];
+        let tired = self.inverses.iter().zip(&state.inverses).filter_map(|(inverse, state)| {
+            Some(inverse.fatigue.as_ref()?.save(state.fatigue.as_ref()?))
+        });
+        core::iter::once(S::Bits::from(fingerprint::<S, _>(CONTROLLER, self)))
+            .chain(own)
+            .chain(core::iter::once(S::Bits::from(saturated)))
+            .chain(slow.into_iter().flat_map(S::lag_state_words))
+            .chain(state.inverses.iter().flat_map(|inverse| inverse.lead.words()))
+            .chain(tired.flatten())
+    }
+
+    /// A state saved by [`save`](Self::save); refused unless it is this controller's and one it can
+    /// be in.
+    pub fn restore(
+        &self,
+        words: impl IntoIterator<Item = S::Bits>,
+    ) -> Result<FesControllerState<S>, RestoreError> {
+        let length = FesControllerState::<S>::OWN;
+        let mut parts = Parts::new(words.into_iter(), self.saved_words());
+        let expected = fingerprint::<S, _>(CONTROLLER, self);
+        let mut state = self.start(self.range.least);
+        parts.part(length, |words| {
+            let mut saved = Saved::new(words, length, expected)?;
+            state.target = saved.number(|angle| self.range.contains(angle))?;
+            state.angle = saved.number(|angle| self.range.contains(angle))?;
+            state.measured = saved.number(S::is_finite)?;
+            let saturated = saved.count(4)?;
+            state.saturated = Saturated { above: saturated & 1 != 0, below: saturated & 2 != 0 };
+            let any = S::from_f64(1e4);
+            let range = if self.of_torque { Range { least: -any, most: any } } else { self.range };
+            state.expected = saved.lag_state(&range)?;
+            state.integral = self.feedback.restored(&mut saved)?;
+            let gains = Range { least: S::ONE, most: S::ONE };
+            state.gain = match &self.gain {
+                Some(gain) => gain.restored(&mut saved)?,
+                None => saved.lag_state(&gains)?,
+            };
+            for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {
+                state.lead = inverse.lead.restored(&mut saved)?;
+            }
+            saved.finished()
+        })?;
+        for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {
+            if let Some(fatigue) = &inverse.fatigue {
+                let length = FatigueState::<S>::SAVED_WORDS;
+                state.fatigue = Some(parts.part(length, |words| fatigue.restore(words))?);
+            }
+        }
+        parts.finished()?;
+        Ok(state)
+    }
+}

@@ -1,0 +1,94 @@
+//! On-line estimate of a muscle's gain: the torque it makes over the torque the model expects.
+//!
+//! The model's inverse is asked for a torque c. If the muscle makes g c, tracking needs g c = τ.
+//! What the feedback has to add to the feed-forward torque, p, says how far the estimate ĝ is off:
+//! with ĝ c = τ + p, dĝ/dt = -(p/c)/T moves it until p is 0, with the time constant T/g. It is a
+//! gradient rule, slower than the feedback so that both do not fight.
+
+use crate::checksum::summed;
+use crate::error::{ParameterError, within};
+use crate::saved::{RestoreError, Saved};
+use crate::scalar::Scalar;
+use crate::tick::range::Range;
+use crate::tick::time_step::TimeStep;
+
+/// Parameters of the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct GainParams {
+    /// Time constant T, s; 0.1 to 1,000. Less follows fatigue faster and follows noise too.
+    pub time: f64,
+    /// Least gain; 0.1 to 1.
+    pub least: f64,
+    /// Greatest gain; 1 to 10.
+    pub most: f64,
+    /// Torque below which nothing can be learnt, N m; 0.01 to 100. The estimate is frozen there.
+    pub excitation: f64,
+}
+
+impl GainParams {
+    /// Validates the parameters; the error has field, value and limit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        within("gain.time", self.time, 0.1, 1e3)?;
+        within("gain.least", self.least, 0.1, 1.0)?;
+        within("gain.most", self.most, 1.0, 10.0)?;
+        within("gain.excitation", self.excitation, 0.01, 100.0)
+    }
+}
+
+/// An estimate's coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct GainEstimate<S: Scalar> {
+    share: S::Share,
+    range: Range<S>,
+    excitation: S,
+}
+
+summed!([S: Scalar] GainEstimate<S> { share, range, excitation });
+
+/// What an update has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Learnt {
+    /// It moved the estimate.
+    Moved,
+    /// Not excited, or saturated: frozen.
+    Frozen,
+    /// It would have left its range, or was not a number: refused.
+    Refused,
+}
+
+impl<S: Scalar> GainEstimate<S> {
+    /// An estimate for torques that count in `unit` N m.
+    pub fn build(params: &GainParams, unit: f64, step: TimeStep) -> Result<Self, ParameterError> {
+        params.validate()?;
+        Ok(Self {
+            share: S::share(step.seconds() / params.time),
+            range: Range::new((params.least, params.most), S::from_f64),
+            excitation: S::from_f64(params.excitation / unit),
+        })
+    }
+
+    /// Moves the estimate by what the feedback adds to the torque that the inverse was asked for.
+    pub fn step(&self, gain: &mut S::LagState, asked: S, feedback: S, saturated: bool) -> Learnt {
+        if saturated || asked.abs() < self.excitation {
+            return Learnt::Frozen;
+        }
+        // At most 1: one bad sample moves it by no more than a tick over T.
+        let same = (feedback > S::ZERO) == (asked > S::ZERO);
+        let ratio = feedback.abs().ratio(asked.abs()).min(S::ONE);
+        let moved = S::advanced(*gain, if same { -ratio } else { ratio }, self.share);
+        if self.range.contains(S::of(moved)) {
+            *gain = moved;
+            Learnt::Moved
+        } else {
+            Learnt::Refused
+        }
+    }
+
+    pub(super) fn restored<I: Iterator<Item = S::Bits>>(
+        &self,
+        saved: &mut Saved<I>,
+    ) -> Result<S::LagState, RestoreError> {
+        saved.lag_state(&self.range)
+    }
+}
