@@ -220,7 +220,7 @@ function copyRun() {
   else element("copied").textContent = `Only ${KEPT_TICKS * TICK} s can be saved: restart at rest.`;
 }
 
-/** A muscle of the list: on the middle of its paths. */
+/** A muscle of the list: on the path on which fascicles and tendon have their optimal lengths. */
 function choose() {
   const muscle = data.muscles[Number(element("muscle").value)];
   showMuscle(muscle);
@@ -228,7 +228,8 @@ function choose() {
   // Defined once, to know its paths.
   model.define(0, chosenMuscle(data), path);
   const quantities = model.quantities(0);
-  showPathRange(quantities, (50 * (quantities.fascicle + quantities.tendon + quantities.maxPath)).toFixed(2));
+  const { fascicle, tendon, maxPath } = quantities;
+  showPathRange(quantities, (100 * Math.min(fascicle + tendon, maxPath)).toFixed(2));
   restart();
   legend();
 }
