@@ -1,8 +1,8 @@
 //! The muscles of the page, for JavaScript: numbers in, numbers out.
 //!
 //! A function per question, `f64` and `u32` only: no memory is shared with JavaScript, and nothing
-//! is generated. Quantities are in the units of a muscle file, so that a muscle copied from the page
-//! is the muscle of the page, to the last bit.
+//! is generated. Quantities are in the units of a muscle file, so that a muscle copied from the
+//! page is the muscle of the page, to the last bit.
 
 mod muscle;
 mod running;
@@ -123,9 +123,9 @@ pub extern "C" fn step(slot: u32, activation: f64, path_m: f64, frequency: f64) 
     if status.is_nan() { -1 } else { status as i32 }
 }
 
-/// What the muscle of a slot puts out: 0 is the tendon's force (N), 1 the fascicles' length (L_ce0),
-/// 2 their velocity (L_ce0/s), 3 and on the activation of each type, as a share of F0: recruitment
-/// times Af times FL.
+/// What the muscle of a slot puts out: 0 is the tendon's force (N), 1 the fascicles' length
+/// (L_ce0), 2 their velocity (L_ce0/s), 3 and on the activation of each type, as a share of F0:
+/// recruitment times Af times FL.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn output(slot: u32, which: u32) -> f64 {
@@ -148,8 +148,8 @@ pub extern "C" fn status_name_byte(bit: u32, index: u32) -> u32 {
     running::status_name(bit).as_bytes().get(index as usize).map_or(0, |byte| u32::from(*byte))
 }
 
-/// A curve of the muscle of a slot, fully activated, in F0: 0 is the isometric force at a length `x`
-/// (L_ce0), 1 the passive force there, 2 the force at L_ce0 and a velocity `x` (L_ce0/s).
+/// A curve of the muscle of a slot, fully activated, in F0: 0 is the isometric force at a length
+/// `x` (L_ce0), 1 the passive force there, 2 the force at L_ce0 and a velocity `x` (L_ce0/s).
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn curve(slot: u32, curve: u32, x: f64) -> f64 {

@@ -1,4 +1,5 @@
-//! A muscle of the page, in the units of a muscle file, made into parameters as `vm run` makes them.
+//! A muscle of the page, in the units of a muscle file, made into parameters as `vm run` makes
+//! them.
 
 use vm_nostd::{
     Class, ElementParams, FiberParams, FiberType, MuscleParams, feline_vm4, human_vm4,
