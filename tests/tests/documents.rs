@@ -111,6 +111,41 @@ fn links_and_headings_are_parsed() {
     assert!(anchors(text).contains("a-b"));
 }
 
+/// A table's rows as trimmed cells.
+fn rows(text: &str) -> impl Iterator<Item = Vec<&str>> {
+    let lines = text.lines().filter(|line| line.starts_with('|'));
+    lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+}
+
+/// The README's errors on real muscle, from the table that `vm measured --write` makes.
+#[test]
+fn errors_on_real_muscle_are_those_of_the_fits() {
+    let fits = read(&root().join("host-sim/docs/fitting.md"));
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let means: Vec<f64> = rows(&fits)
+        .filter(|row| row.len() == 5 && row[1] == "nothing")
+        .map(|row| number(row[3]))
+        .collect();
+    assert_eq!(means.len(), 2, "two sets of recordings");
+    let worst = rows(&fits)
+        .filter(|row| row.len() == 7 && row[2] == "predict" && row[3] == "nothing")
+        .map(|row| number(row[4]))
+        .fold(0.0, f64::max);
+    let readme = read(&root().join("README.md"));
+    for mean in means {
+        let text = format!("a mean error of {mean:.0} % of F0, {worst:.0} % at\nworst");
+        assert!(readme.contains(&text), "{text}");
+    }
+}
+
+/// The rate that `firmware/README.md` states and a test computes.
+#[test]
+fn the_readme_states_the_link_rate_of_the_firmware() {
+    let firmware = read(&root().join("firmware/README.md"));
+    assert!(firmware.contains("360 rows"), "firmware/README.md");
+    assert!(read(&root().join("README.md")).contains("at most 360 rows per second"));
+}
+
 #[test]
 fn the_picture_is_current() {
     let picture = readme::picture().expect("a picture");

@@ -18,11 +18,11 @@
  * if (vm_f32_build(&muscle, sizeof muscle, &params, VM_MODE_FES, 1e-3, &error) != VM_RESULT_OK) {
  *     // error.field, error.value, error.least, error.most
  * }
- * vm_f32_rest(&muscle, 0.16f);
+ * if (vm_f32_rest(&muscle, 0.16f) != VM_RESULT_OK) return;
  * // Every millisecond:
  * VmInputF32 input = { .activation = 0.5f, .path_length_m = 0.16f, .stimulation_frequency_pps = 25.0f };
- * VmOutputF32 output;
- * vm_f32_step(&muscle, &input, &output);
+ * VmOutputF32 output = {0};
+ * if (vm_f32_step(&muscle, &input, &output) != VM_RESULT_OK) return;
  * @endcode
  *
  * Units: f32 and f64 have m, N, pps, mA and us. In fixed point paths are in um, forces in mN, numbers (activation,
