@@ -107,6 +107,38 @@ fn no_file_imports_back() {
     assert!(found.iter().all(|(circles, _)| circles.is_empty()), "{found:#?}");
 }
 
+/// The table of ARCHITECTURE.md is in the order of imports, and has every file of the model.
+#[test]
+fn the_map_of_the_model_is_in_the_order_of_imports() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a text");
+    let (_, table) = text.split_once("From the ground up").expect("the table");
+    let (table, _) = table.split_once("\n## ").expect("its end");
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `")?.split_once(" |"))
+        .map(|(places, _)| places.trim_end_matches('`').split("`, `").collect())
+        .collect();
+    // The row of a file: the one that names it, or else its folder.
+    let row = |file: &str| {
+        let names =
+            |place: &&str| file == *place || place.ends_with('/') && file.starts_with(*place);
+        let matching = rows.iter().enumerate().filter_map(|(row, places)| {
+            places.iter().filter(|place| names(place)).map(|place| (place.len(), row)).max()
+        });
+        matching.max().map(|(_, row)| row)
+    };
+    let file = root().join("vm-nostd/src/lib.rs");
+    let folder = file.parent().expect("a folder");
+    let imports = imports::Crate::new(&sources(folder), &file).imports(folder);
+    assert!(imports.len() > 100, "{}", imports.len());
+    for (from, to) in imports.iter().filter(|(from, _)| from != "lib.rs") {
+        let (Some(above), Some(below)) = (row(from), row(to)) else {
+            panic!("ARCHITECTURE.md has no row for {from} or {to}");
+        };
+        assert!(below <= above, "{from} imports {to}, which is below it in ARCHITECTURE.md");
+    }
+}
+
 /// These packages are built for each mutant.
 #[test]
 fn the_tests_of_the_libraries_build_without_the_host() {

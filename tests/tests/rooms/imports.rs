@@ -71,6 +71,20 @@ impl Crate {
         circles.into_iter().collect()
     }
 
+    /// Every import between files, by their paths below a folder.
+    pub fn imports(&self, folder: &Path) -> Vec<(String, String)> {
+        let name = |module: &Module| {
+            let path = &self.0[module].path;
+            path.strip_prefix(folder).unwrap_or(path).display().to_string()
+        };
+        let edges = self.edges();
+        let each = |(from, to): (&Module, &BTreeSet<Module>)| {
+            let from = name(from);
+            to.iter().map(|to| (from.clone(), name(to))).collect::<Vec<_>>()
+        };
+        edges.iter().flat_map(each).collect()
+    }
+
     fn edges(&self) -> BTreeMap<Module, BTreeSet<Module>> {
         let mut edges = BTreeMap::new();
         for (module, file) in &self.0 {
