@@ -36,9 +36,9 @@ fn expanded(source: &str, functions: &str) -> String {
 /// Assertions of the sizes of all structs.
 fn size_assertions(sizes: &str, header: &str) -> String {
     let mut text = String::new();
-    let rows = sizes.lines().filter_map(|line| {
-        line.trim().strip_prefix("Vm")?.strip_suffix(',')?.split_once(" = ")
-    });
+    let rows = sizes
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("Vm")?.strip_suffix(',')?.split_once(" = "));
     for (name, bytes) in rows {
         writeln!(text, "VM_ASSERT_SIZE(Vm{name}, {bytes});").expect("a string");
     }
