@@ -255,6 +255,8 @@ const _: () = {
             );
         };
     }
+    // Used with the feature `units` only.
+    let _units = $UNITS_BASE + 2 * $UNITS_PER_TYPE;
     each!(2);
     use model::{IntramuscularFes, NaturalContinuous, State};
     assert!(State::<$S, NaturalContinuous, 2>::SAVED_WORDS == $STATE_WORDS);

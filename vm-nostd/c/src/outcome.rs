@@ -1,4 +1,4 @@
-//! Outcomes of functions, as C is told of them.
+//! Outcomes as results for C.
 
 use crate::pointer::Place;
 use crate::result::{Refusal, VmError, VmResult};

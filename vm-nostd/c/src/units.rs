@@ -1,5 +1,8 @@
 //! Motor units.
 
+// The header has them whatever the features.
+#![cfg_attr(not(feature = "units"), allow(dead_code))]
+
 /// Most motor units of a muscle.
 pub const VM_MAX_UNITS: usize = 64;
 
