@@ -46,7 +46,7 @@ const KEPT_ALIVE: usize = 400;
 const WINDOW: usize = 3600;
 
 /// Timeout of the machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Pins count as settled after this time without a change.
 const STILL: Duration = Duration::from_millis(300);
@@ -131,7 +131,7 @@ impl Machine {
             if said.len() + unanswered >= requests.len() {
                 return said;
             }
-            assert!(started.elapsed() < PATIENCE, "silence after {said:?}");
+            assert!(started.elapsed() < TIMEOUT, "silence after {said:?}");
             match self.line.read(&mut byte) {
                 Ok(_) => (),
                 Err(error)
@@ -201,7 +201,7 @@ impl Machine {
             if later == pins {
                 return pins;
             }
-            assert!(started.elapsed() < PATIENCE, "it goes on: {pins:?}, {later:?}");
+            assert!(started.elapsed() < TIMEOUT, "it goes on: {pins:?}, {later:?}");
             pins = later;
         }
     }

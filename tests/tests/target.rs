@@ -14,7 +14,7 @@ use system_tests::{build, skip};
 use vm_nostd::Fixed;
 
 /// Timeout: the scenario takes 12 s in QEMU, longer on a busy host.
-const PATIENCE: Duration = Duration::from_secs(240);
+const TIMEOUT: Duration = Duration::from_secs(240);
 
 /// Runs a program on the emulated chip and returns what it wrote.
 fn emulate(board: Board, program: &Path) -> Result<Vec<u8>, TargetError> {
@@ -32,9 +32,9 @@ fn emulate(board: Board, program: &Path) -> Result<Vec<u8>, TargetError> {
         if let Some(status) = child.try_wait().expect("a child to wait for") {
             break status;
         }
-        if started.elapsed() > PATIENCE {
+        if started.elapsed() > TIMEOUT {
             let _gone = child.kill();
-            panic!("the emulated target did not finish in {PATIENCE:?}");
+            panic!("the emulated target did not finish in {TIMEOUT:?}");
         }
         std::thread::sleep(Duration::from_millis(20));
     };

@@ -34,8 +34,8 @@ impl FlashController for Controller {
         DWT::cycle_count()
     }
 
-    fn is_watchdog_patient(&self) -> bool {
-        watchdog::is_patient()
+    fn watchdog_allows_flash(&self) -> bool {
+        watchdog::allows_flash()
     }
 
     fn is_busy(&self) -> bool {

@@ -3,14 +3,14 @@
 use super::chip::pac::IWDG;
 use super::chip::reset;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use firmware::watchdog::{self, MOST_CHANGE_MS, Patience, WatchdogRegisters};
+use firmware::watchdog::{self, MOST_CHANGE_MS, Timeout, WatchdogRegisters};
 
-/// Whether it waits long enough for flash to hold up the core: set by the tick, asked by the link.
-static PATIENT: AtomicBool = AtomicBool::new(false);
+/// Whether its timeout exceeds an erase, which stalls the core: set by the tick, asked by the link.
+static ALLOWS_FLASH: AtomicBool = AtomicBool::new(false);
 
-/// See [`PATIENT`].
-pub fn is_patient() -> bool {
-    PATIENT.load(Relaxed)
+/// See [`ALLOWS_FLASH`].
+pub fn allows_flash() -> bool {
+    ALLOWS_FLASH.load(Relaxed)
 }
 
 /// The part's registers.
@@ -26,10 +26,10 @@ impl WatchdogRegisters for Registers {
         status.pvu().bit_is_set() || status.rvu().bit_is_set()
     }
 
-    fn change(&mut self, patience: Patience) {
+    fn change(&mut self, timeout: Timeout) {
         self.0.kr().write(|w| w.key().unlock());
-        self.0.pr().write(|w| w.pr().set(patience.prescaler));
-        self.0.rlr().write(|w| w.rl().set(patience.reload));
+        self.0.pr().write(|w| w.pr().set(timeout.prescaler));
+        self.0.rlr().write(|w| w.rl().set(timeout.reload));
     }
 
     fn feed(&mut self) {
@@ -59,6 +59,6 @@ impl Watchdog {
             // Without it nothing would end a hang.
             reset()
         }
-        PATIENT.store(self.0.is_patient(), Relaxed);
+        ALLOWS_FLASH.store(self.0.allows_flash(), Relaxed);
     }
 }

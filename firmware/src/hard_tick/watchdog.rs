@@ -11,14 +11,14 @@ const MOST_COUNTS: u32 = 4096;
 
 /// Timeout of a watchdog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct Timeout {
     /// Prescaler: the oscillator is divided by 4 * 2^this, 0 to 6.
     pub prescaler: u8,
     /// Reload: counts minus one, 0 to 4095.
     pub reload: u16,
 }
 
-impl Patience {
+impl Timeout {
     /// Shortest timeout of at least this many ms at the fastest oscillator; 22,000 ms at most.
     pub const fn at_least(ms: u32) -> Self {
         let mut prescaler = 0;
@@ -53,14 +53,14 @@ impl Patience {
 }
 
 /// While current may flow: three of the longest tick times.
-pub const ARMED: Patience = Patience::at_least(6);
+pub const ARMED: Timeout = Timeout::at_least(6);
 /// While disarmed: longer than flash stalls the core, see
 /// [`MOST_STORE_MS`].
-pub const DISARMED: Patience = Patience::at_least(MOST_STORE_MS + 100);
+pub const DISARMED: Timeout = Timeout::at_least(MOST_STORE_MS + 100);
 /// Longest update from one to the other, ms.
 pub const MOST_CHANGE_MS: u32 = DISARMED.change_ms();
 
-const _: () = assert!(ARMED.most_ms() < 20, "armed, too patient");
+const _: () = assert!(ARMED.most_ms() < 20, "armed, too long");
 const _: () = assert!(DISARMED.least_ms() > MOST_STORE_MS);
 const _: () = assert!(DISARMED.change_ms() >= ARMED.change_ms());
 
@@ -71,7 +71,7 @@ pub trait WatchdogRegisters {
     /// An update of prescaler or reload is pending.
     fn is_changing(&self) -> bool;
     /// Writes both.
-    fn change(&mut self, patience: Patience);
+    fn change(&mut self, timeout: Timeout);
     /// Restarts the count from the current reload.
     fn feed(&mut self);
 }
@@ -85,7 +85,7 @@ pub struct Stuck;
 pub struct Watchdog<R> {
     registers: R,
     /// Last written timeout.
-    written: Patience,
+    written: Timeout,
     /// Whether it is in force.
     in_force: bool,
     /// Ticks since the update began, and their limit.
@@ -130,7 +130,7 @@ impl<R: WatchdogRegisters> Watchdog<R> {
     }
 
     /// Whether flash may stall the core: [`DISARMED`] is in force.
-    pub fn is_patient(&self) -> bool {
+    pub fn allows_flash(&self) -> bool {
         self.in_force && self.written == DISARMED
     }
 }

@@ -10,7 +10,7 @@ use embedded_storage::nor_flash::{
 };
 
 /// Longest wait for the watchdog's disarmed timeout, ms.
-const MOST_PATIENCE_MS: u32 = MOST_CHANGE_MS + 10;
+const MOST_TIMEOUT_CHANGE_MS: u32 = MOST_CHANGE_MS + 10;
 
 /// Flash controller: flags, operations and a clock.
 pub trait FlashController {
@@ -24,7 +24,7 @@ pub trait FlashController {
     /// Its clock, which wraps around.
     fn counts(&self) -> u32;
     /// Whether the watchdog's timeout exceeds an erase.
-    fn is_watchdog_patient(&self) -> bool;
+    fn watchdog_allows_flash(&self) -> bool;
     /// Whether an operation is running.
     fn is_busy(&self) -> bool;
     /// Whether an error flag is set.
@@ -94,7 +94,7 @@ impl<C: FlashController> Flash<C> {
 
     /// Runs one operation with cleared flags.
     fn operate(&mut self, operation: impl FnOnce(&mut C) -> bool) -> Result<(), FlashError> {
-        self.within(MOST_PATIENCE_MS, C::is_watchdog_patient)?;
+        self.within(MOST_TIMEOUT_CHANGE_MS, C::watchdog_allows_flash)?;
         self.within(MOST_ERASE_MS, |controller| !controller.is_busy())?;
         self.0.clear_flags();
         if self.0.has_error() {

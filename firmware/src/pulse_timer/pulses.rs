@@ -22,7 +22,7 @@ pub struct Pulses<'q, D, P> {
     plans: Taker<'q, Guarded<Plan<CHANNELS>>>,
     permission: &'q Permission,
     /// Duration of a tick's permission, µs.
-    patience_us: u32,
+    permission_us: u32,
     /// Longest possible time since the last permission, µs.
     age_us: u32,
     /// A pulse is running.
@@ -39,7 +39,7 @@ pub struct Pulses<'q, D, P> {
 const DISCHARGE_US: u32 = 20_000;
 
 /// Duration of a permission in ticks; each tick renews it.
-const PATIENCE_TICKS: u32 = 2;
+const PERMISSION_TICKS: u32 = 2;
 
 impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
     /// Duration of the first step, µs.
@@ -52,14 +52,14 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         permission: &'q Permission,
         tick_us: u32,
     ) -> Self {
-        let patience_us = PATIENCE_TICKS * tick_us;
+        let permission_us = PERMISSION_TICKS * tick_us;
         let schedule = Schedule::new();
         Self {
             stage,
             schedule,
             plans: Taker(plans),
             permission,
-            patience_us,
+            permission_us,
             age_us: 0,
             pulsing: false,
             lasted_us: Self::FIRST_US,
@@ -80,7 +80,7 @@ impl<'q, D: SpiDevice, P: OutputPin> Pulses<'q, D, P> {
         self.lasted_us = self.next.duration_us;
         // A step that would outlast the permission does not begin.
         let ends_us = self.age_us.saturating_add(self.next.duration_us);
-        let is_overdue = ends_us > self.patience_us && !self.schedule.is_idle();
+        let is_overdue = ends_us > self.permission_us && !self.schedule.is_idle();
         if is_overdue {
             self.permission.set_late(true);
         }

@@ -29,7 +29,7 @@ impl Randomness for Numbers {
 /// A tick, µs; the timer that calls for ticks counts these.
 const TICK: u32 = 1000;
 /// A host that hears nothing for so many ticks is told so.
-const PATIENCE: u32 = 300;
+const SILENT_TICKS: u32 = 300;
 
 /// A device and the time. It only passes while the host reads.
 pub struct InProcess<F> {
@@ -168,7 +168,7 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
 
 impl<F: MultiwriteNorFlash> Read for InProcess<F> {
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize> {
-        for _ in 0..PATIENCE {
+        for _ in 0..SILENT_TICKS {
             let mut length = 0;
             while length < bytes.len()
                 && let Some(byte) = self.server.transmit()

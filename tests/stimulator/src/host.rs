@@ -2,9 +2,10 @@
 
 use crate::client::Client;
 use crate::device::{InProcess, Memory};
-use firmware::link::{Answer, Mode, Readings, Report, Request, Upload};
+use firmware::link::{Answer, Electrode, Mode, Readings, Report, Request, Upload};
 use firmware::safety::{CHANNELS, Fault, State};
 use firmware::{MUSCLE, Stimulus};
+use vm_nostd::RecruitmentCurveParams;
 
 /// A host and its device.
 pub type Host = Client<InProcess<Memory>>;
@@ -19,6 +20,20 @@ pub const STIMULUS: Stimulus = Stimulus {
     width_us: 200,
     gap_us: 40,
     frequency_tenths_pps: 400,
+    recovery: 1,
+};
+
+/// An electrode with which nothing is wrong.
+pub const ELECTRODE: Electrode = Electrode {
+    channel: 0,
+    curve: RecruitmentCurveParams {
+        threshold: 4e-3,
+        saturation: 12e-3,
+        chronaxie: 200e-6,
+        slope: 2.0,
+    },
+    width_us: 200,
+    gap_us: 40,
     recovery: 1,
 };
 

@@ -9,3 +9,4 @@ pub mod explorer;
 pub mod host;
 pub mod levels;
 pub mod patient;
+pub mod world;

@@ -5,22 +5,8 @@ use firmware::safety::{Fault, NotArmed, State};
 use firmware::{MUSCLES, Stimulus};
 use stimulator_tests::client::{Client, ClientError};
 use stimulator_tests::device::{InProcess, LIMITS};
-use stimulator_tests::host::{Host, READINGS, STIMULUS, arm, booted, fes, report};
+use stimulator_tests::host::{ELECTRODE, Host, READINGS, STIMULUS, arm, booted, fes, report};
 use vm_nostd::RecruitmentCurveParams;
-
-/// An electrode with which nothing is wrong.
-const ELECTRODE: Electrode = Electrode {
-    channel: 0,
-    curve: RecruitmentCurveParams {
-        threshold: 4e-3,
-        saturation: 12e-3,
-        chronaxie: 200e-6,
-        slope: 2.0,
-    },
-    width_us: 200,
-    gap_us: 40,
-    recovery: 1,
-};
 
 #[test]
 fn an_activation_becomes_pulses_once_somebody_has_armed() {

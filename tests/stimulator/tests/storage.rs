@@ -1,10 +1,11 @@
 //! Power that is lost at any byte of a write, or of an erasure: what was stored before is still
 //! there.
 
+use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use firmware::link::{Mode, Request, Upload};
+use firmware::link::{Mode, Request, Upload, VERSION};
 use firmware::{MOST_STORED, MUSCLE, NotStored, RamFlash, Slots};
 use stimulator_tests::client::Client;
 use stimulator_tests::device::InProcess;
@@ -251,4 +252,42 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
         heavy += u32::from(is_new);
     }
     assert!((10..30).contains(&heavy), "{heavy} of 62");
+}
+
+/// The slot that was written after the greatest generation there is counts.
+#[test]
+fn generations_of_slots_go_round() {
+    const HALF: u32 = 4096;
+    let slot = |generation: u32, content: &[u8]| {
+        let mut bytes = Vec::new();
+        let length = u32::try_from(content.len()).expect("short");
+        for field in [0x4D53_4D00 + u32::from(VERSION), generation, length] {
+            bytes.extend(field.to_le_bytes());
+        }
+        let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+        let mut digest = crc.digest();
+        digest.update(&bytes);
+        digest.update(content);
+        bytes.extend(digest.finalize().to_le_bytes());
+        bytes.extend(content);
+        bytes
+    };
+    for (first, second, newest) in [
+        (u32::MAX, 0, "second"),
+        (0, u32::MAX, "first"),
+        (5, 6, "second"),
+        (6, 5, "first"),
+        (u32::MAX - 1, u32::MAX, "second"),
+        (0x7fff_ffff, 0x8000_0000, "second"),
+    ] {
+        let mut memory = RamFlash::<8192>::new();
+        memory.write(0, &slot(first, b"first")).expect("memory");
+        memory.write(HALF, &slot(second, b"second")).expect("memory");
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(memory, &mut buffer);
+        assert_eq!(slots.load(), Some(newest.as_bytes()), "{first:x} {second:x}");
+        // The next content is newer than both.
+        slots.store(b"third").expect("memory");
+        assert_eq!(slots.load(), Some(b"third".as_slice()), "{first:x} {second:x}");
+    }
 }

@@ -8,23 +8,10 @@ use firmware::link::{Answer, Electrode, Mode, Request, Upload};
 use firmware::{NotStored, RamFlash, Slots};
 use stimulator_tests::client::{Client, ClientError};
 use stimulator_tests::device::InProcess;
-use stimulator_tests::host::{STIMULUS, fes};
-use vm_nostd::{MuscleParams, RecruitmentCurveParams};
+use stimulator_tests::host::{ELECTRODE, STIMULUS, fes};
+use vm_nostd::MuscleParams;
 
 const BYTES: usize = 8192;
-
-const ELECTRODE: Electrode = Electrode {
-    channel: 0,
-    curve: RecruitmentCurveParams {
-        threshold: 4e-3,
-        saturation: 12e-3,
-        chronaxie: 200e-6,
-        slope: 2.0,
-    },
-    width_us: 200,
-    gap_us: 40,
-    recovery: 1,
-};
 
 /// A memory of whose operations some fail: before they do anything, or when they are done.
 #[derive(Clone)]

@@ -286,7 +286,7 @@ fn requests_of_before_arming_are_kept_until_they_are_too_old() {
 fn a_muscle_that_lost_a_bit_is_a_fault() {
     let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
     assert!(bench.tick());
-    bench.device.ends.muscles[0].as_mut().expect("a muscle").lose_a_bit();
+    bench.device.ends.muscles[0].as_mut().expect("a muscle").flip_checksum_bit();
     assert!(!bench.tick());
     assert_eq!(bench.state(), State::Latched(Fault::Checksum));
 }

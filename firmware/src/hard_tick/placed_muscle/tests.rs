@@ -14,8 +14,8 @@ const INPUTS: RowInputs =
     RowInputs { activation: 0.5, path_length: 0.16, stimulation_frequency: 40.0 };
 
 impl PlacedMuscle {
-    /// Memory loses a bit of it.
-    pub(crate) fn lose_a_bit(&mut self) {
+    /// Flips a bit of its checksum, as memory may.
+    pub(crate) fn flip_checksum_bit(&mut self) {
         self.checksums[0] ^= 1;
     }
 }

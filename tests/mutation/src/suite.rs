@@ -1,0 +1,204 @@
+//! The tests of a package: which of them reach which mutants, and which of them fail.
+
+use crate::compile::Program;
+use std::collections::{BTreeMap, HashSet};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// CPU time for all tests of one mutant.
+pub const BUDGET_MS: u64 = 20_000;
+/// Tests that take less together run in one process.
+const TOGETHER_MS: u64 = 150;
+
+/// One test.
+#[derive(Clone, Debug)]
+pub struct Test {
+    program: Program,
+    /// Its name.
+    pub name: String,
+    cpu_ms: u64,
+    reaches: HashSet<usize>,
+    /// How many mutants of the source at hand it noticed.
+    pub noticed: u64,
+}
+
+/// What the tests made of a mutant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// This test failed.
+    Caught(String),
+    /// One of these tests did not end.
+    Timeout(String),
+    /// No test failed that reached it.
+    Survived,
+    /// No test reached it.
+    Unreached,
+}
+
+/// Everything that children have taken so far.
+fn children_ms() -> u64 {
+    let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // Behind the name in brackets: the 14th and 15th from there; a tick is 10 ms.
+    let behind = stat.rsplit(')').next().unwrap_or_default();
+    let fields: Vec<u64> =
+        behind.split_whitespace().map(|field| field.parse().unwrap_or(0)).collect();
+    10 * fields.get(13..15).map_or(0, |both| both.iter().sum())
+}
+
+/// Runs these tests of a program, one after the other.
+fn run(
+    program: &Program,
+    names: &[&str],
+    seconds: u64,
+    environment: &[(&str, &str)],
+) -> Result<Output, String> {
+    // What waits for nothing, or takes all memory, is stopped too.
+    let limits = format!("ulimit -t {seconds}; ulimit -v 4000000; exec \"$@\"");
+    Command::new("timeout")
+        .args(["--kill-after=1", "120", "sh", "-c", &limits, "sh"])
+        .arg(&program.path)
+        .args(names)
+        .args(["--exact", "--test-threads=1"])
+        .envs(environment.iter().copied())
+        .current_dir(&program.folder)
+        .output()
+        .map_err(|error| format!("{}: {error}", program.path.display()))
+}
+
+/// Finds all tests and what they reach; all of them have to pass.
+pub fn trace(programs: &[Program], log: &Path) -> Result<Vec<Test>, String> {
+    let mut tests = Vec::new();
+    for program in programs {
+        let output = Command::new(&program.path)
+            .args(["--list", "--format", "terse"])
+            .current_dir(&program.folder)
+            .output()
+            .map_err(|error| format!("{}: {error}", program.path.display()))?;
+        for line in String::from_utf8_lossy(&output.stdout).lines() {
+            let Some(name) = line.strip_suffix(": test") else { continue };
+            let _ = fs::remove_file(log);
+            let before = children_ms();
+            let environment =
+                [("VM_MUTANT", "trace"), ("VM_MUTANT_LOG", log.to_str().unwrap_or_default())];
+            let output = run(program, &[name], 120, &environment)?;
+            if !output.status.success() {
+                let text = String::from_utf8_lossy(&output.stdout);
+                return Err(format!("{name} fails without a mutant:\n{text}"));
+            }
+            let cpu_ms = (children_ms() - before).max(10);
+            let reaches = reached(log);
+            let (program, name) = (program.clone(), name.to_owned());
+            tests.push(Test { program, name, cpu_ms, reaches, noticed: 0 });
+        }
+    }
+    if tests.is_empty() {
+        return Err("no tests".into());
+    }
+    Ok(tests)
+}
+
+/// The mutants that a log names.
+fn reached(log: &Path) -> HashSet<usize> {
+    let text = fs::read_to_string(log).unwrap_or_default();
+    text.lines().filter_map(|line| line.parse().ok()).collect()
+}
+
+/// All mutants that any test reaches.
+pub fn reached_by(tests: &[Test]) -> HashSet<usize> {
+    tests.iter().flat_map(|test| test.reaches.iter().copied()).collect()
+}
+
+/// Sum of the time of all tests that reach a mutant.
+pub fn cost_ms(tests: &[Test], mutant: usize) -> u64 {
+    tests.iter().filter(|test| test.reaches.contains(&mutant)).map(|test| test.cpu_ms).sum()
+}
+
+/// Runs the tests of a mutant that is chosen at run time.
+pub fn chosen(tests: &mut [Test], mutant: usize, log: &Path) -> Result<Verdict, String> {
+    let reaching: Vec<usize> =
+        (0..tests.len()).filter(|&test| tests[test].reaches.contains(&mutant)).collect();
+    if reaching.is_empty() {
+        return Ok(Verdict::Unreached);
+    }
+    let _ = fs::remove_file(log);
+    let number = mutant.to_string();
+    let log_name = log.to_str().unwrap_or_default();
+    let verdict =
+        first_failure(tests, reaching, &[("VM_MUTANT", &number), ("VM_MUTANT_LOG", log_name)])?;
+    // A verdict about nothing is none.
+    if !reached(log).contains(&mutant) {
+        return match verdict {
+            Verdict::Survived => Ok(Verdict::Unreached),
+            other => Err(format!("{other:?}, but mutant {mutant} was not reached")),
+        };
+    }
+    Ok(verdict)
+}
+
+/// Runs all tests of programs with one change built into them; `timed` knows how long they take.
+pub fn rebuilt(programs: &[Program], timed: &mut [Test]) -> Result<Verdict, String> {
+    // Programs keep their place; what does not is another build's.
+    let folders: BTreeMap<_, _> =
+        programs.iter().map(|program| (program.folder.clone(), program.clone())).collect();
+    for test in timed.iter_mut() {
+        test.program = folders.get(&test.program.folder).ok_or("a program is missing")?.clone();
+    }
+    first_failure(timed, (0..timed.len()).collect(), &[])
+}
+
+fn first_failure(
+    tests: &mut [Test],
+    mut reaching: Vec<usize>,
+    environment: &[(&str, &str)],
+) -> Result<Verdict, String> {
+    // Those that noticed mutants of this source first, then the quickest.
+    reaching.sort_by_key(|&test| tests[test].cpu_ms * 100 / (1 + tests[test].noticed));
+    let begin = children_ms();
+    let mut rest = &reaching[..];
+    while let Some(&first) = rest.first() {
+        let spent = children_ms() - begin;
+        if spent >= BUDGET_MS {
+            break;
+        }
+        let (mut sum, mut count) = (0, 0);
+        for &test in rest {
+            sum += tests[test].cpu_ms;
+            let fits = sum <= TOGETHER_MS || count == 0;
+            if tests[test].program.path != tests[first].program.path || !fits {
+                break;
+            }
+            count += 1;
+        }
+        let (now, later) = rest.split_at(count);
+        rest = later;
+        let expected: u64 = now.iter().map(|&test| tests[test].cpu_ms).sum();
+        // A test takes as long as it did, or some times that where a mutant makes it busy.
+        let most_ms = (5 * expected + 2_000).min(BUDGET_MS - spent);
+        let names: Vec<&str> = now.iter().map(|&test| &*tests[test].name).collect();
+        let output = run(&tests[first].program, &names, most_ms.div_ceil(1000), environment)?;
+        if output.status.success() {
+            continue;
+        }
+        let text = String::from_utf8_lossy(&output.stdout);
+        let failed = text.lines().find_map(|line| {
+            line.strip_prefix("test ")?.strip_suffix(" ... FAILED").map(str::to_owned)
+        });
+        if let Some(name) = failed {
+            if let Some(test) = tests.iter_mut().find(|test| test.name == name) {
+                test.noticed += 1;
+            }
+            return Ok(Verdict::Caught(name));
+        }
+        let all = names.join(" ");
+        // Killed by a limit, by itself or through `timeout`; else it ended in another way.
+        return Ok(match std::os::unix::process::ExitStatusExt::signal(&output.status) {
+            Some(9 | 24) => Verdict::Timeout(all),
+            _ => match output.status.code() {
+                Some(124 | 137 | 152) => Verdict::Timeout(all),
+                _ => Verdict::Caught(all),
+            },
+        });
+    }
+    Ok(Verdict::Survived)
+}
