@@ -171,6 +171,19 @@ def test_curves_pass_where_they_must(page):
     assert near(velocity, -3) < 0.6 and near(velocity, 2) > 1.2
 
 
+def test_activations_of_the_types_are_the_force_of_a_held_muscle(page):
+    page.slide("activation", 1)
+    page.advance(20)
+    force, length, velocity, slow, fast = page.driver.execute_script(
+        "return run.tracks[0].rings.map((ring) => ring[run.tick])"
+    )
+    relative = force / page.driver.execute_script("return run.quantities.force")
+    # At rest FV is 1, and near L_ce0 passive forces are less than 0.2 % of F0.
+    assert abs(velocity) < 1e-3 and abs(length - 1) < 0.05
+    assert slow > fast > 0.1
+    assert abs(slow + fast - relative) < 2e-3
+
+
 def test_numbers_are_there_for_screen_readers_and_keyboards(page):
     page.click("run")
     time.sleep(4)
