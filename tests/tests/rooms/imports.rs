@@ -32,7 +32,7 @@ impl Crate {
 
     fn add(&mut self, sources: &[(PathBuf, String)], folder: &Path, file: &Path, module: Module) {
         let Some((path, text)) = sources.iter().find(|(path, _)| path == file) else { return };
-        let code = without_tests(&without_comments(text));
+        let code = without_tests(&without_texts(&without_comments(text)));
         let (imports, code) = imports(&code);
         for name in declared(&code) {
             let child: Module = module.iter().cloned().chain([name]).collect();
@@ -135,6 +135,15 @@ impl Crate {
 
 fn without_comments(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+/// Without what is between quotes, on one line.
+fn without_texts(code: &str) -> String {
+    let kept = |line: &str| {
+        let line = line.replace("\\\"", "").replace("'\"'", "' '");
+        line.split('"').step_by(2).collect::<Vec<_>>().join("\"\"")
+    };
+    code.lines().map(kept).collect::<Vec<_>>().join("\n")
 }
 
 /// Without what follows `#[cfg(test)]`: up to its `;`, or its closing brace.
