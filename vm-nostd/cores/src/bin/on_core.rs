@@ -3,10 +3,10 @@
 #![no_std]
 #![no_main]
 
-use firmware::{Arithmetic, Record, Rig, Scenario, TICKS};
 use semihosting::io::{Stdout, Write, stdout};
 use semihosting::process::ExitCode;
 use vm_nostd::Fixed;
+use vm_nostd_cores::{Arithmetic, Record, Rig, Scenario, TICKS};
 
 /// Words that go to the host at once.
 const CHUNK: usize = 64;

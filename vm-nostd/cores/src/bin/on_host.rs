@@ -1,8 +1,8 @@
 //! The same scenario on the host, for comparison.
 
-use firmware::{Arithmetic, Record, Rig, Scenario, TICKS};
 use std::io::{self, BufWriter, Write};
 use vm_nostd::Fixed;
+use vm_nostd_cores::{Arithmetic, Record, Rig, Scenario, TICKS};
 
 /// Writes words.
 struct Outlet<W> {
