@@ -1,6 +1,7 @@
 //! The command line `vm`.
 
 mod arm;
+mod closed_loop;
 mod cycles;
 mod fit;
 mod hil;
@@ -57,6 +58,8 @@ enum Command {
     Hil(hil::HilArgs),
     /// Simulate a planar two-joint arm with six muscles at constant activations.
     Arm(arm::ArmArgs),
+    /// Compare controllers of stimulation in closed loop on patients that differ from the model.
+    Loop(closed_loop::LoopArgs),
     /// Reproduce figures 3 to 7 of the paper as SVG and CSV, and check its claims.
     Figures(FiguresArgs),
     /// Write every measurement to one HTML page that needs no network.
@@ -160,6 +163,7 @@ pub fn main() -> ExitCode {
         Command::Stack(args) => stack::run(&args),
         Command::Hil(args) => hil::run(&args).map(|()| true),
         Command::Arm(args) => arm::run(&args).map(|()| true),
+        Command::Loop(args) => closed_loop::run(&args).map(|()| true),
         Command::Figures(args) => make_figures(&args).map(|()| true),
         Command::Report(args) => write_report(&args).map(|()| true),
         Command::Sweep(args) => sweep::run(&args).map(|()| true),

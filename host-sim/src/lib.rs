@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod chart;
+pub mod closed_loop;
 pub mod coefficients;
 pub mod command_line;
 pub mod cycles;

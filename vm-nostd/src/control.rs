@@ -36,7 +36,7 @@ pub use lead::{Lead, LeadParams, LeadState};
 pub use limb::LimbParams;
 pub use limit::CommandLimits;
 pub use path::{Action, AngleRange, LEAST_ARM, ORDER, PathParams, Placed};
-pub use pi::{Pi, PiParams, Saturated};
+pub use pi::{Pi, PiParams, PiState, Saturated};
 pub use prosthesis::{
     Prosthesis, ProsthesisCommand, ProsthesisInput, ProsthesisParams, ProsthesisState,
     ProsthesisStatus,

@@ -125,7 +125,8 @@ fn input<S: Scalar>(tick: i32) -> ProsthesisInput<S> {
     }
 }
 
-/// Torque by the definitions: envelopes as recursions of `f64`, muscles in `f64`, arms as published.
+/// Torque by the definitions: envelopes as recursions of `f64`, muscles in `f64`, arms as
+/// published.
 fn expected() -> Vec<f64> {
     let muscles =
         KNEE.muscles.map(|m| ContinuousMuscle::<f64, 2>::build(&m.params(), STEP).unwrap());

@@ -25,6 +25,36 @@ use crate::status::Status;
 use crate::tick::time_step::TimeStep;
 
 /// Steady state of a muscle under intramuscular FES.
+///
+/// ```
+/// use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
+/// use vm_nostd::{Class, FiberParams, MuscleParams, Status, SteadyFes};
+/// use vm_nostd::{RecruitmentCurve, RecruitmentCurveParams};
+///
+/// # let fibers = [
+/// #     FiberParams { fraction: 0.6, fiber_type: SLOW },
+/// #     FiberParams { fraction: 0.4, fiber_type: FAST },
+/// # ];
+/// # let params = MuscleParams {
+/// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
+/// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS, fibers,
+/// # };
+/// let steady = SteadyFes::<f32, 2>::build(&params)?;
+/// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
+///     threshold: 1e-3,  // A
+///     saturation: 6e-3, // A
+///     chronaxie: 2e-4,  // s
+///     slope: 2.0,
+/// })?;
+/// // Pulse width at 10 mA that holds 60 N at 16 cm and 20 pps.
+/// let wanted = steady.activation_for(60.0, 0.16, 20.0);
+/// assert_eq!(wanted.status, Status::empty());
+/// let (width, status) = curve.width_for(wanted.activation, 10.0);
+/// assert!(status.is_empty() && (50.0..200.0).contains(&width));
+/// // 500 N is more than this muscle can hold.
+/// assert_eq!(steady.activation_for(500.0, 0.16, 20.0).status, Status::FORCE_UNREACHABLE);
+/// # Ok::<(), vm_nostd::ParameterError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyFes<S: Scalar, const N: usize> {
     domain: Domain<S>,
@@ -171,8 +201,8 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         self.holding(wanted, self.rounding, path_length, stimulation_frequency)
     }
 
-    /// Activation whose steady force (F0) is nearest to the wanted one, from a single evaluation: 0 or
-    /// 1 with [`Status::FORCE_UNREACHABLE`] where no activation holds it at the length that the
+    /// Activation whose steady force (F0) is nearest to the wanted one, from a single evaluation: 0
+    /// or 1 with [`Status::FORCE_UNREACHABLE`] where no activation holds it at the length that the
     /// fascicles would have. For controllers, which ask in every tick; tendons as long as five
     /// fascicles may have other equilibria, which are not looked for.
     pub fn nearest_activation(

@@ -1,6 +1,6 @@
 //! From a torque to the stimulation of two antagonists: the model's inverse, in four steps.
 //!
-//! Torque -> forces (moment arms, co-contraction) -> rested forces (fitness, gain) -> steady
+//! Torque -> forces (moment arms, co-contraction) -> rested forces (fitness) -> steady
 //! activations ([`SteadyFes`]) -> stimulation (the lead that cancels excitation).
 
 use super::joint::{Joint, Posture};
@@ -78,18 +78,17 @@ pub(super) struct Stimulated<S> {
 }
 
 impl<S: Scalar, const N: usize> Inverse<S, N> {
-    /// The stimulation with which muscle `index` makes a torque of its own sign, at a gain.
+    /// The stimulation with which muscle `index` makes a torque of its own sign.
     pub(super) fn step(
         &self,
         state: &mut InverseState<S>,
         (joint, posture, index): (&Joint<S, 1, 2>, &Posture<S, 1, 2>, usize),
         torque: S,
-        gain: S,
         frequency: S::Quantity,
     ) -> Stimulated<S> {
         let fitness = state.fatigue.map_or(S::ONE, |fatigue| fatigue.fitness());
-        let strength = gain * fitness.max(self.least_fitness);
-        let force = joint.force_for(posture, index, 0, torque).ratio(strength.max(S::LEAST));
+        let strength = fitness.max(self.least_fitness);
+        let force = joint.force_for(posture, index, 0, torque).ratio(strength);
         let path = posture.muscles[index].path_length;
         let (wanted, status) = self.steady.nearest_activation(force, path, frequency);
         let ahead = self.lead.step(&mut state.lead, wanted);

@@ -9,7 +9,7 @@ use super::gain_estimate::{GainEstimate, Learnt};
 use super::joint::{Joint, JointError, JointMuscle, TORQUE_UNIT};
 use super::lead::{Lead, LeadParams, LeadState};
 use super::limb::Limb;
-use super::pi::{Pi, Saturated};
+use super::pi::{Pi, PiState, Saturated};
 use super::saved::{Parts, fingerprint};
 use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
 use crate::beyond_paper::recruitment_curve::{Pulse, PulseStatus, RecruitmentCurve};
@@ -156,14 +156,14 @@ pub struct FesControllerState<S: Scalar> {
     measured: S,
     /// What the feedback expects to be measured.
     expected: S::LagState,
-    integral: S::LagState,
+    feedback: PiState<S>,
     gain: S::LagState,
     saturated: Saturated,
     inverses: [InverseState<S>; 2],
 }
 
 impl<S: Scalar> FesControllerState<S> {
-    const OWN: usize = 1 + 4 + 3 * S::SLOW_WORDS + 2 * LeadState::<S>::WORDS;
+    const OWN: usize = 1 + 4 + 2 * S::SLOW_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
     /// Words of a saved state without fatigue; [`FesController::saved_words`] has those of a
     /// controller.
     pub const LEAST_SAVED_WORDS: usize = Self::OWN;
@@ -236,8 +236,8 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         })
     }
 
-    /// A controller that starts at an angle (rad), clipped to the joint's range, with rested muscles
-    /// and a gain of 1.
+    /// A controller that starts at an angle (rad), clipped to the joint's range, with rested
+    /// muscles and a gain of 1.
     pub fn start(&self, angle: S) -> FesControllerState<S> {
         let (angle, _) = self.range.clip(angle);
         let expected = if self.of_torque { S::ZERO } else { angle };
@@ -246,7 +246,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             angle,
             measured: S::ZERO,
             expected: expected.lag_state(),
-            integral: S::ZERO.lag_state(),
+            feedback: self.feedback.rested(),
             gain: S::ONE.lag_state(),
             saturated: Saturated::default(),
             inverses: self.inverses.each_ref().map(|inverse| InverseState {
@@ -277,13 +277,14 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         // The joint follows late: feedback compares with what is to be measured now.
         state.expected = self.expected.at_end(state.expected, wanted);
         let error = S::of(state.expected) - measured;
-        let fed_back = self.feedback.step(&mut state.integral, error, state.saturated);
+        let fed_back = self.feedback.step(&mut state.feedback, error, state.saturated);
+        // The gain scales the feed-forward alone: an estimate that is off cannot destabilise the loop.
+        let forward = forward.ratio(S::of(state.gain));
         let (torque, limited) = self.torque.clip(forward + fed_back);
         status.set(ControlStatus::TORQUE_LIMITED, limited);
 
         let posture = self.joint.posture([state.angle]);
         let shares = self.cocontraction.shares(torque);
-        let gain = S::of(state.gain);
         let mut activations = [S::ZERO; 2];
         let mut pulses = [self.pulse(0, S::ZERO).0; 2];
         let mut muscles = [Status::empty(); 2];
@@ -292,7 +293,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             let place = (&self.joint, &posture, i);
             let inverse = &mut state.inverses[i];
             let stimulated =
-                self.inverses[i].step(inverse, place, shares.torques[i], gain, self.frequency);
+                self.inverses[i].step(inverse, place, shares.torques[i], self.frequency);
             activations[i] = stimulated.activation;
             muscles[i] = stimulated.status;
             at_most[i] = stimulated.at_most;
@@ -409,7 +410,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let Saturated { above, below } = state.saturated;
         let saturated = u32::from(above) + 2 * u32::from(below);
         let own = [state.target, state.angle, state.measured].map(S::to_bits);
-        let slow = [state.expected, state.integral, state.gain];
+        let slow = [state.expected, state.gain];
         let tired = self.inverses.iter().zip(&state.inverses).filter_map(|(inverse, state)| {
             Some(inverse.fatigue.as_ref()?.save(state.fatigue.as_ref()?))
         });
@@ -417,6 +418,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             .chain(own)
             .chain(core::iter::once(S::Bits::from(saturated)))
             .chain(slow.into_iter().flat_map(S::lag_state_words))
+            .chain(state.feedback.words())
             .chain(state.inverses.iter().flat_map(|inverse| inverse.lead.words()))
             .chain(tired.flatten())
     }
@@ -441,12 +443,12 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             let any = S::from_f64(1e4);
             let range = if self.of_torque { Range { least: -any, most: any } } else { self.range };
             state.expected = saved.lag_state(&range)?;
-            state.integral = self.feedback.restored(&mut saved)?;
             let gains = Range { least: S::ONE, most: S::ONE };
             state.gain = match &self.gain {
                 Some(gain) => gain.restored(&mut saved)?,
                 None => saved.lag_state(&gains)?,
             };
+            state.feedback = self.feedback.restored(&mut saved)?;
             for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {
                 state.lead = inverse.lead.restored(&mut saved)?;
             }

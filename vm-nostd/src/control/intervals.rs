@@ -1,14 +1,15 @@
 //! Pulses that are not periodic: the stimulation frequency that the equations are given.
 //!
-//! **Rule.** The frequency is the reciprocal of the last interval between two pulses, from the second
-//! of them on; once more than that interval has passed since the last pulse, it is the reciprocal of
-//! the time since. A pulse after a pause, of 0.5 s unless said otherwise, starts a train: until the
-//! second pulse of a train the frequency is 0.
+//! **Rule.** The frequency is the reciprocal of the last interval between two pulses, from the
+//! second of them on; once more than that interval has passed since the last pulse, it is the
+//! reciprocal of the time since. A pulse after a pause, of 0.5 s unless said otherwise, starts a
+//! train: until the second pulse of a train the frequency is 0.
 //!
-//! **What the model can claim.** A periodic train gives its own frequency. A doublet at the start of
-//! a train makes the force rise faster, as published (Binder-Macleod & Kesar, Muscle Nerve 31 (2005)
-//! 681-693): Af is taken at the high frequency. What it cannot show: the twitch of a single pulse,
-//! summation within one interval, the catch-like property (force that stays higher after a doublet).
+//! **What the model can claim.** A periodic train gives its own frequency. A doublet at the start
+//! of a train makes the force rise faster, as published (Binder-Macleod & Kesar, Muscle Nerve 31
+//! (2005) 681-693): Af is taken at the high frequency. What it cannot show: the twitch of a single
+//! pulse, summation within one interval, the catch-like property (force that stays higher after a
+//! doublet).
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};

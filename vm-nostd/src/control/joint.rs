@@ -178,8 +178,8 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
         })
     }
 
-    /// Force (F0) with which a muscle alone makes a torque (units of 1,024 N m) about the only joint
-    /// that counts, `j`; 0 for a torque of the other direction.
+    /// Force (F0) with which a muscle alone makes a torque (units of 1,024 N m) about the only
+    /// joint that counts, `j`; 0 for a torque of the other direction.
     pub(super) fn force_for(
         &self,
         posture: &Posture<S, J, M>,

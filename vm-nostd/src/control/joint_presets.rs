@@ -16,8 +16,8 @@
 //!   Assumed: that it goes on to 90°.
 //! - Hamstrings: 20 mm for biceps femoris, 20 to 40 mm for semimembranosus, 40 to 55 mm for
 //!   semitendinosus (Tözeren, Human Body Dynamics, appendix C, which names Spoor & van Leeuwen
-//!   1992). Here: the mean weighted by F0 with the middle of each range, 29.3 mm. Assumed: constant,
-//!   as Visser et al., Eur. J. Appl. Physiol. 61 (1990) 453-460, found for biceps femoris
+//!   1992). Here: the mean weighted by F0 with the middle of each range, 29.3 mm. Assumed:
+//!   constant, as Visser et al., Eur. J. Appl. Physiol. 61 (1990) 453-460, found for biceps femoris
 //!   (abstract).
 //! - Biceps and triceps: Pigeon, Yahia & Feldman, J. Biomech. 29 (1996) 1365-1370, polynomials in
 //!   degrees, as two published programs give them (the paper itself was not read).

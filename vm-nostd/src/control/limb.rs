@@ -1,7 +1,7 @@
 //! The limb that a joint moves: the torque that a motion needs.
 //!
-//! τ = J a + B v + G sin(q - q_hang), with the inertia J about the joint, damping B, and G = m g l of
-//! the limb's weight at its centre's distance from the joint.
+//! τ = J a + B v + G sin(q - q_hang), with the inertia J about the joint, damping B, and G = m g l
+//! of the limb's weight at its centre's distance from the joint.
 
 use super::path::{AngleRange, Axis};
 use crate::checksum::summed;
@@ -33,7 +33,8 @@ impl LimbParams {
     }
 }
 
-/// Terms of the sine's series: over a range of 4 rad the rest is below 3e-4 of G, over 2.5 rad 3e-6.
+/// Terms of the sine's series: over a range of 4 rad the rest is below 3e-4 of G, over 2.5 rad
+/// 3e-6.
 const TERMS: usize = 10;
 
 /// A limb, ready for a tick; torques count in a unit.

@@ -1,12 +1,14 @@
-//! Proportional and integral feedback with anti-windup.
+//! Proportional, integral and, if wanted, derivative feedback with anti-windup.
 //!
-//! u = k_p e + k_i ∫ e dt. The integral is held while the command is saturated in the direction that
-//! the error would push it further (conditional integration), and never exceeds its limit.
+//! u = k_p e + k_i ∫ e dt + k_d s/(1 + T_d s) e. The integral is held while the command is
+//! saturated in the direction that the error would push it further (conditional integration), and
+//! never exceeds its limit.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
@@ -19,6 +21,11 @@ pub struct PiParams {
     pub proportional: f64,
     /// k_i, the same per s; 0 to 10,000. More removes an offset faster and overshoots.
     pub integral: f64,
+    /// k_d, the same times s; 0 to 100. It damps a limb that the muscles do not damp, until noise
+    /// and delay make it shake.
+    pub derivative: f64,
+    /// Filter time of the derivative T_d, s; 0.005 to 1. More rejects noise and is later.
+    pub derivative_filter: f64,
     /// Greatest torque of the integral, N m; 0 to 1,000.
     pub most: f64,
 }
@@ -28,6 +35,8 @@ impl PiParams {
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("pi.proportional", self.proportional, 0.0, 1e3)?;
         within("pi.integral", self.integral, 0.0, 1e4)?;
+        within("pi.derivative", self.derivative, 0.0, 100.0)?;
+        within("pi.derivative_filter", self.derivative_filter, 5e-3, 1.0)?;
         within("pi.most", self.most, 0.0, 1e3)
     }
 }
@@ -49,10 +58,38 @@ pub struct Pi<S: Scalar> {
     integral: S,
     share: S::Share,
     most: S,
+    /// k_d/T_d.
+    derivative: S,
+    filter: Lag<S>,
 }
 
-summed!([S: Scalar] Pi<S> { proportional, integral, share, most });
+summed!([S: Scalar] Pi<S> { proportional, integral, share, most, derivative, filter });
 
+/// State of the feedback.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PiState<S: Scalar> {
+    integral: S::LagState,
+    /// The filtered error.
+    filtered: S::LagState,
+}
+
+impl<S: Scalar> PiState<S> {
+    /// Number of [`words`](Self::words).
+    pub const WORDS: usize = 2 * S::SLOW_WORDS;
+
+    /// The bits.
+    pub fn words(&self) -> impl Iterator<Item = S::Bits> {
+        [self.integral, self.filtered].into_iter().flat_map(S::lag_state_words)
+    }
+
+    /// The integral, in units of the output.
+    pub fn integral(&self) -> S {
+        S::of(self.integral)
+    }
+}
+
+/// Errors are less than this: angles in rad, torques in 1,024 N m.
+const GREATEST_ERROR: f64 = 100.0;
 /// An integral gain per tick is split: a share of 256 ticks, and the rest.
 const TICKS: f64 = 256.0;
 
@@ -71,26 +108,37 @@ impl<S: Scalar> Pi<S> {
             integral: S::from_f64(params.integral * scale * TICKS * step.seconds()),
             share: S::share(1.0 / TICKS),
             most: S::from_f64(params.most / unit),
+            derivative: S::from_f64(params.derivative * scale / params.derivative_filter),
+            filter: Lag::new(params.derivative_filter, step),
         })
     }
 
-    /// k_p e + I, and the integral afterwards.
-    pub fn step(&self, integral: &mut S::LagState, error: S, saturated: Saturated) -> S {
+    /// No error for long.
+    pub fn rested(&self) -> PiState<S> {
+        PiState { integral: S::ZERO.lag_state(), filtered: S::ZERO.lag_state() }
+    }
+
+    /// The feedback of an error.
+    pub fn step(&self, state: &mut PiState<S>, error: S, saturated: Saturated) -> S {
         let pushes_on =
             (saturated.above && error > S::ZERO) || (saturated.below && error < S::ZERO);
         if !pushes_on {
-            let moved = S::advanced(*integral, self.integral * error, self.share);
+            let moved = S::advanced(state.integral, self.integral * error, self.share);
             let value = S::of(moved);
             let kept = value.max(-self.most).min(self.most);
-            *integral = if kept == value { moved } else { kept.lag_state() };
+            state.integral = if kept == value { moved } else { kept.lag_state() };
         }
-        self.proportional * error + S::of(*integral)
+        let ahead = error - S::of(state.filtered);
+        state.filtered = self.filter.at_end(state.filtered, error);
+        self.proportional * error + S::of(state.integral) + self.derivative * ahead
     }
 
     pub(super) fn restored<I: Iterator<Item = S::Bits>>(
         &self,
         saved: &mut Saved<I>,
-    ) -> Result<S::LagState, RestoreError> {
-        saved.lag_state(&Range { least: -self.most, most: self.most })
+    ) -> Result<PiState<S>, RestoreError> {
+        let integral = saved.lag_state(&Range { least: -self.most, most: self.most })?;
+        let any = S::from_f64(GREATEST_ERROR);
+        Ok(PiState { integral, filtered: saved.lag_state(&Range { least: -any, most: any })? })
     }
 }

@@ -214,8 +214,8 @@ impl<S: Scalar, const N: usize, const D: usize> Prosthesis<S, N, D> {
         }
     }
 
-    /// The [`ProsthesisState::SAVED_WORDS`] words of a saved state: a fingerprint of the prosthesis,
-    /// and the state.
+    /// The [`ProsthesisState::SAVED_WORDS`] words of a saved state: a fingerprint of the
+    /// prosthesis, and the state.
     pub fn save(&self, state: &ProsthesisState<S, N, D>) -> impl Iterator<Item = S::Bits> {
         let own = [state.angle, state.torque, state.stiffness].map(S::to_bits);
         let muscles = self.muscles.iter().zip(&state.muscles);

@@ -2,8 +2,8 @@
 //! activation that it has.
 //!
 //! At V = 0 the fascicles pull F(L) = Σ w_i Af_i(L) FL_i(L) + F_pe1(L) + c F_pe2(L) with what is
-//! recruited, w, the frequency of each type and the weight c of F_pe2 held. The tendon is in series:
-//! dF_se/dL_mt = k_f k_t/(k_f + k_t), with k_f = dF/dL and the tendon's stiffness k_t.
+//! recruited, w, the frequency of each type and the weight c of F_pe2 held. The tendon is in
+//! series: dF_se/dL_mt = k_f k_t/(k_f + k_t), with k_f = dF/dL and the tendon's stiffness k_t.
 
 use crate::muscle::Muscle;
 use crate::recruitment::{

@@ -71,6 +71,31 @@ pub(super) struct MotorUnit {
 }
 
 /// The motor units of a muscle, at most `UNITS`, in order of recruitment.
+///
+/// ```
+/// use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
+/// use vm_nostd::{
+///     Class, DiscreteMuscle, FiberParams, Input, MotorUnits, MuscleParams, TimeStep, UnitSizes,
+/// };
+///
+/// # let fibers = [
+/// #     FiberParams { fraction: 0.6, fiber_type: SLOW },
+/// #     FiberParams { fraction: 0.4, fiber_type: FAST },
+/// # ];
+/// # let params = MuscleParams {
+/// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
+/// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS, fibers,
+/// # };
+/// // 30 slow units of the authors' sizes, and 20 fast units, each 5 % larger than the last.
+/// let sizes = [UnitSizes::Default(30), UnitSizes::Geometric(20, 0.05)];
+/// let units = MotorUnits::<50>::new(&params, sizes)?;
+/// let step = TimeStep::MILLISECOND;
+/// let muscle = DiscreteMuscle::<f32, 2, 50>::build_with_units(&params, &units, step)?;
+/// let mut state = muscle.rest(0.16)?;
+/// let input = Input { activation: 0.3, path_length: 0.16, stimulation_frequency: 0.0 };
+/// muscle.step(&mut state, input);
+/// # Ok::<(), vm_nostd::ParameterError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorUnits<const UNITS: usize> {
     units: Vec<MotorUnit, UNITS>,
