@@ -1,7 +1,7 @@
 //! One test for each change that once went unnoticed. `tests/planted` has
 //! the changes.
 
-use firmware::link::{Mode, Request, RowInputs, Upload};
+use firmware::link::{Electrode, Mode, Request, RowInputs, Upload};
 use firmware::safety::{Fault, Observed, Requested, State};
 use firmware::{Guarded, Limits, Plan, Schedule, Step, Stimulus};
 use stimulator_tests::bench::{Bench, stimulus};
@@ -64,7 +64,8 @@ fn no_activation_and_less_than_a_pulse_a_second_are_no_pulses() {
 #[test]
 fn an_electrode_is_only_for_fes() {
     let mut host = booted();
-    let upload = Upload { mode: Mode::Continuous, electrode: Some(ELECTRODE), ..fes() };
+    let electrode = Some(Electrode { channel: 1, ..ELECTRODE });
+    let upload = Upload { mode: Mode::Continuous, electrode, ..fes() };
     let refused = host.order(&Request::Upload { place: 0, upload });
     let reason = "electrode: only for FES = 1: must be 0 to 0".to_owned();
     assert_eq!(refused, Err(ClientError::Refused { reason, no_room: false }));

@@ -131,7 +131,7 @@ fn mutants() -> Vec<Mutant> {
         mutant(MatchArmGuard, "n if n > 5", "n > 5", "false"),
         mutant(BinaryOperator, "n if n > 5", ">", ">="),
         mutant(UnaryOperator, "n if n > 5", "-", ""),
-        mutant(StructField, "{ one, ..BASE }", "one", ""),
+        mutant(StructField, "{ one, ..BASE }", "one,", ""),
         // Those that are not woven.
         mutant(BinaryOperator, "fn above", "+", "-"),
         mutant(BinaryOperator, "of && n > 3", "&&", "||"),
