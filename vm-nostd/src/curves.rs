@@ -1,7 +1,8 @@
 //! Curves of a built muscle: what its equations give at rates and lengths of the caller's choice.
 
 use crate::domain::Domain;
-use crate::equations::force_length::OptimalLength;
+use crate::equations::activation_frequency;
+use crate::equations::force_length::{self, OptimalLength};
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::tendon::Tendon;
 use crate::fiber::Fiber;
@@ -102,7 +103,9 @@ impl<S: Scalar> FiberCurves<'_, S> {
     /// Force-length relation FL, 0..1.
     #[doc(alias = "FL")]
     pub fn force_length(&self, fascicle_length: S) -> S {
-        self.fiber.force_length.at(&self.optimal_length.distance(self.clamped(fascicle_length)))
+        let distance = self.optimal_length.distance(self.clamped(fascicle_length));
+        let [value] = force_length::at([&self.fiber.force_length], &distance);
+        value
     }
 
     /// Force-velocity relation FV, at least 0: 1 at V = 0, 0 below V_max. The velocity is in
@@ -111,13 +114,18 @@ impl<S: Scalar> FiberCurves<'_, S> {
     pub fn force_velocity(&self, fascicle_length: S, fascicle_velocity: S) -> S {
         let (velocity, _) = self.domain.fascicle_velocity.clip(fascicle_velocity);
         let curve = self.fiber.force_velocity.at(self.clamped(fascicle_length), S::ZERO);
-        self.fiber.force_velocity.on(&curve, S::ZERO, velocity > S::ZERO, velocity).0
+        if self.fiber.force_velocity.is_beyond(velocity) {
+            return S::ZERO;
+        }
+        self.fiber.force_velocity.on(&curve, S::ZERO, velocity).value
     }
 
     /// Activation-frequency relation Af, 0..1, at a frequency in f0.5, at least 0: the effective
     /// one times sag and yield, Y S f.
     #[doc(alias = "Af")]
     pub fn activation_frequency(&self, fascicle_length: S, frequency: S) -> S {
-        self.fiber.activation.at(self.clamped(fascicle_length).reciprocal()).at(frequency)
+        let reciprocal = self.clamped(fascicle_length).reciprocal();
+        let [curve] = activation_frequency::curves([&self.fiber.activation], reciprocal);
+        curve.at(frequency)
     }
 }

@@ -1,4 +1,5 @@
 //! The mechanics: fascicles between their mass and the tendon.
 
+mod abreast;
 pub(crate) mod contraction;
 mod decay;

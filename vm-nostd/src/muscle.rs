@@ -2,7 +2,7 @@
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::Domain;
-use crate::equations::force_length::OptimalLength;
+use crate::equations::force_length::{self, OptimalLength};
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::yielding::Speed;
 use crate::error::{ParameterError, within};
@@ -21,6 +21,7 @@ use crate::status::Status;
 use crate::tick::course::Course;
 use crate::tick::range::share;
 use crate::tick::time_step::TimeStep;
+use core::array::from_fn;
 
 /// A muscle of `N` fibre types under natural continuous recruitment.
 pub type ContinuousMuscle<S, const N: usize> = Muscle<S, NaturalContinuous, N>;
@@ -337,28 +338,26 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let distance = self.optimal_length.distance(inside);
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
-        let mut gains = [Course { middle: S::ZERO, change: S::ZERO }; N];
-        let mut compressed = Course { middle: S::ZERO, change: S::ZERO };
-        let mut jumps = false;
-        let mut next = gains.iter_mut().zip(&mut state.gains);
-        self.recruitment.advance(&self.fibers, &mut state.recruitment, moment, |fiber, of_type| {
-            let activation = of_type.activation;
-            compressed.middle = compressed.middle + of_type.compression_weight * activation;
-            jumps = of_type.change_after_jump.is_some();
-            let active = activation * fiber.force_length.at(&distance);
-            let gain = of_type.weight * active;
-            if let Some((course, kept)) = next.next() {
-                let change =
-                    of_type.change_after_jump.map_or(gain - *kept, |weight| weight * active);
-                // A gain that falls fast would pass 0 before the tick's end.
-                *course = Course { middle: gain, change: change.max(-(gain + gain)) };
-                *kept = gain;
-            }
+        let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, moment);
+        let force_lengths =
+            force_length::at(self.fibers.each_ref().map(|fiber| &fiber.force_length), &distance);
+        let active: [S; N] = from_fn(|i| recruited[i].activation * force_lengths[i]);
+        let kept = state.gains;
+        state.gains = from_fn(|i| recruited[i].weight * active[i]);
+        let gains = from_fn(|i| {
+            let gain = state.gains[i];
+            let jump = recruited[i].change_after_jump;
+            let change = jump.map_or(gain - kept[i], |weight| weight * active[i]);
+            // A gain that falls fast would pass 0 before the tick's end.
+            Course { middle: gain, change: change.max(-(gain + gain)) }
         });
-        if !jumps {
-            compressed.change = compressed.middle - state.compressed;
-        }
-        state.compressed = compressed.middle;
+        let compressed = recruited
+            .iter()
+            .fold(S::ZERO, |sum, of_type| sum + of_type.compression_weight * of_type.activation);
+        let jumps = recruited.iter().any(|of_type| of_type.change_after_jump.is_some());
+        let change = if jumps { S::ZERO } else { compressed - state.compressed };
+        state.compressed = compressed;
+        let compressed = Course { middle: compressed, change };
         let passive_slope = parallel_slope + compressed.middle * compression_slope;
         let passive_at_middle = parallel + compressed.middle * compression;
         Contractile {

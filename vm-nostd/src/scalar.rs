@@ -69,6 +69,9 @@ pub trait Scalar:
     const LEAST: Self;
     /// Largest representable coefficient.
     const LARGEST_COEFFICIENT: f64;
+    /// Whether fibre types go through a tick side by side, so that one's results need not be waited
+    /// for; where registers are few, they go one after the other.
+    const SIDE_BY_SIDE: bool;
     /// Range of maximal isometric force that outputs can represent, N.
     const MAXIMAL_FORCES: (f64, f64);
     /// Resolution of forces, N.
@@ -103,12 +106,21 @@ pub trait Scalar:
     /// Half; fixed point rounds toward minus infinity.
     #[must_use]
     fn half(self) -> Self;
-    /// Polynomial in `self` (-1..1) and its slope; coefficients by powers, constant first. The sum
-    /// of their magnitudes, and that of the slope's, is at most 100.
-    fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self);
+    /// Polynomials in `self` (-1..1); coefficients by powers, constant first. The sum of their
+    /// magnitudes is at most 100.
+    fn polynomials<const N: usize, const TERMS: usize>(
+        self,
+        terms: [&[Self; TERMS]; N],
+    ) -> [Self; N];
     /// Reciprocal of a positive number; saturates.
     #[must_use]
     fn reciprocal(self) -> Self;
+    /// Reciprocals of positive numbers.
+    #[must_use]
+    fn reciprocals<const N: usize>(numbers: [Self; N]) -> [Self; N];
+    /// Quotients by positive numbers.
+    #[must_use]
+    fn ratios<const N: usize>(dividends: [Self; N], divisors: [Self; N]) -> [Self; N];
     /// Reciprocal of a positive number, as a factor for several quotients.
     fn reciprocal_factor(self) -> Self::Factor;
 
@@ -120,17 +132,26 @@ pub trait Scalar:
     fn ln(self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
     fn softplus(self) -> (Self, Self);
-    /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm, and its slope.
-    fn weibull(self) -> (Self, Self);
-    /// `1/(1 + factor self)`, whose denominator is positive.
+    /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm.
     #[must_use]
-    fn reciprocal_of_one_plus(self, factor: Self) -> Self;
+    fn weibull(self) -> Self;
+    /// `1/(1 + factor self)` of each factor, whose denominators are positive.
+    #[must_use]
+    fn reciprocals_of_one_plus<const N: usize>(self, factors: [Self; N]) -> [Self; N];
     /// Solves a force balance with a residual `self`, a line and a hyperbola: the root u of
-    /// `self` + `line` u + h(u) = 0, and h(u)/(`steepness` u), the secant over the tangent at 0.
+    /// `self` + `line` u + h(u) = 0, and how a velocity decays against its damping.
     ///
     /// h(u) = `steepness` u/(1 + bend u) with half the curvature `half_curvature` at 0; the root is
-    /// on its branch through 0. `line` and `steepness` are positive.
-    fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self);
+    /// on its branch through 0. `line` and `steepness` are positive. The damping is `viscosity` and
+    /// the hyperbola's secant, h(u)/u.
+    fn hyperbola_root(
+        self,
+        line: Self,
+        steepness: Self,
+        half_curvature: Self,
+        inertia: Self,
+        viscosity: Self,
+    ) -> Balance<Self>;
 
     /// State of a lag with the value `self`.
     fn lag_state(self) -> Self::LagState;
@@ -224,6 +245,16 @@ pub trait Scalar:
         if self > other { self } else { other }
     }
 
+    /// Whether it lies between 0 and `end`, of whichever sign that is.
+    fn is_between_0_and(self, end: Self) -> bool;
+
+    /// Whether its sign is that of negative numbers; one bit tells.
+    fn is_negative(self) -> bool;
+
+    /// `self` if its sign is the one asked for, else 0.
+    #[must_use]
+    fn of_sign(self, negative: bool) -> Self;
+
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self {
@@ -238,4 +269,15 @@ pub struct Lags<T> {
     pub response: T,
     /// x exp(-x), by which the second is behind the first.
     pub delayed: T,
+}
+
+/// The velocity at which forces are in balance, and what holds it there.
+#[derive(Clone, Copy, Debug)]
+pub struct Balance<S> {
+    /// The root.
+    pub root: S,
+    /// damping/(inertia + damping), 0..1.
+    pub damped: S,
+    /// 1/(inertia + damping).
+    pub reciprocal: S,
 }

@@ -11,8 +11,8 @@
 //! equilibria, the result is checked by bisection.
 
 use crate::domain::Domain;
-use crate::equations::activation_frequency::ActivationFrequency;
-use crate::equations::force_length::{ForceLength, OptimalLength};
+use crate::equations::activation_frequency::{self, ActivationFrequency};
+use crate::equations::force_length::{self, ForceLength, OptimalLength};
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::sag::SagParams;
 use crate::equations::tendon::{Tendon, TendonInverse};
@@ -320,10 +320,11 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             let per = &fiber.per_half_force_frequency;
             let frequency = S::of_quantity(input.stimulation_frequency, per);
             let sag = fiber.sag[usize::from(frequency > self.firing)];
-            let curve = fiber.activation.at(reciprocal);
+            let [curve] = activation_frequency::curves([&fiber.activation], reciprocal);
             let activation = curve.at(frequency * sag);
             let share = fiber.fraction * activation;
-            active = active + share * fiber.force_length.at(&distance);
+            let [force_length] = force_length::at([&fiber.force_length], &distance);
+            active = active + share * force_length;
             compressed = compressed + share;
         }
         let passive = self.parallel.at(length).0 + compressed * self.compression.at(length).0;

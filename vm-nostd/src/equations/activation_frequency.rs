@@ -4,6 +4,7 @@
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use core::array::from_fn;
 
 /// Coefficients of Af.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,22 +79,31 @@ impl<S: Scalar> ActivationFrequency<S> {
         }
     }
 
-    /// The curve at the fascicle length whose reciprocal is given.
-    pub(crate) fn at(&self, reciprocal: S) -> ActivationCurve<S> {
+    /// n_f at the fascicle length whose reciprocal is given.
+    pub(crate) fn exponent(&self, reciprocal: S) -> S {
         let [constant, slope] = self.exponent;
-        let exponent = constant + slope * reciprocal;
-        ActivationCurve { exponent, per_scale: (self.scale * exponent).reciprocal() }
+        constant + slope * reciprocal
     }
+}
+
+/// Af of all types at one fascicle length, ready for any frequencies.
+#[inline(always)]
+pub(crate) fn curves<S: Scalar, const N: usize>(
+    types: [&ActivationFrequency<S>; N],
+    reciprocal: S,
+) -> [ActivationCurve<S>; N] {
+    let exponents = types.map(|t| t.exponent(reciprocal));
+    let scales: [S; N] = from_fn(|i| types[i].scale * exponents[i]);
+    let per_scale = S::reciprocals(scales);
+    from_fn(|i| ActivationCurve { exponent: exponents[i], per_scale: per_scale[i] })
 }
 
 impl<S: Scalar> ActivationCurve<S> {
     /// Af for an effective frequency Y S f (f0.5, at least 0).
     #[inline(always)]
     pub(crate) fn at(&self, frequency: S) -> S {
-        if frequency <= S::ZERO {
-            return S::ZERO;
-        }
-        (self.exponent * (frequency * self.per_scale).ln()).weibull().0
+        let activation = (self.exponent * (frequency * self.per_scale).ln()).weibull();
+        if frequency > S::ZERO { activation } else { S::ZERO }
     }
 
     /// Af at another length, at the frequency that makes it `value` here:

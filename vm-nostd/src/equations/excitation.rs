@@ -7,6 +7,8 @@ use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::{Lags, Scalar};
 use crate::tick::time_step::TimeStep;
+use core::array::from_fn;
+use core::hint::cold_path;
 
 /// Time constants of excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,48 +87,77 @@ impl<S: Scalar> Excitation<S> {
             fall_per_activation: S::from_f64(params.fall_per_activation / unit),
         }
     }
+}
 
-    /// One tick from (`intermediate`, `effective`) towards `drive`.
-    ///
-    /// `frequency` is f_env, `slowing` the factor of Tf4; both, and the fascicle's `length`, are
-    /// mid-tick values. `reciprocal` is 1/length, clamped to the validity range of the filaments'
-    /// equations. In the variable x = ∫dt/Tf the two lags are linear and solved exactly; if f_int
-    /// and f_eff cross within the tick, x is the sum of both parts.
-    #[inline(always)]
-    pub(crate) fn advance(
-        &self,
-        (intermediate, effective): (S::LagState, S::LagState),
-        drive: S,
-        frequency: S,
-        slowing: S,
-        (length, reciprocal): (S, S),
-    ) -> Excited<S> {
-        let rising = self.rise * length * length + self.rise_per_frequency * frequency;
-        let falling = (self.fall + self.fall_per_activation * slowing) * reciprocal;
+/// What drives the lags of a type in a tick, in f0.5, and where they start from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Driven<'a, S: Scalar> {
+    pub(crate) excitation: &'a Excitation<S>,
+    /// f_int and f_eff at the tick's start.
+    pub(crate) intermediate: S::LagState,
+    pub(crate) effective: S::LagState,
+    /// What f_int tends to.
+    pub(crate) drive: S,
+    /// f_env at mid-tick.
+    pub(crate) frequency: S,
+    /// The factor of Tf4 at mid-tick.
+    pub(crate) slowing: S,
+}
 
-        let lead = S::of(intermediate) - S::of(effective);
-        let excess = S::of(intermediate) - drive;
-        let rises = lead >= S::ZERO;
-        let (now, then) = if rises { (rising, falling) } else { (falling, rising) };
+/// One tick of the lags of types, side by side.
+///
+/// The fascicle's `length` is a mid-tick value, and `reciprocal` is 1/length, clamped to the
+/// validity range of the filaments' equations. In the variable x = ∫dt/Tf the two lags are linear
+/// and solved exactly; if f_int and f_eff cross within the tick, x is the sum of both parts.
+#[inline(always)]
+pub(crate) fn advance<S: Scalar, const N: usize>(
+    types: [Driven<'_, S>; N],
+    length: S,
+    reciprocal: S,
+) -> [Excited<S>; N] {
+    let square = length * length;
+    let rising = types
+        .each_ref()
+        .map(|t| t.excitation.rise * square + t.excitation.rise_per_frequency * t.frequency);
+    let falling = types
+        .each_ref()
+        .map(|t| (t.excitation.fall + t.excitation.fall_per_activation * t.slowing) * reciprocal);
+    let lead = types.each_ref().map(|t| S::of(t.intermediate) - S::of(t.effective));
+    let excess = types.each_ref().map(|t| S::of(t.intermediate) - t.drive);
+    let rises: [bool; N] = from_fn(|i| {
+        // Where f_int and f_eff are equal, the next moment tells.
+        lead[i] > S::ZERO || lead[i] == S::ZERO && excess[i] <= S::ZERO
+    });
+    let now: [S; N] = from_fn(|i| if rises[i] { rising[i] } else { falling[i] });
+    let mut x = S::ratios(types.each_ref().map(|t| t.excitation.tick), now);
+    for i in 0..N {
         // f_int - f_eff = (lead - excess x) exp(-x) changes sign at x = lead/excess. x grows at one
         // rate until then, and at the other for the rest of the tick.
-        let converging = rises == (excess > S::ZERO);
-        let crosses = converging && lead.abs() * now < excess.abs() * self.tick;
-        let (before, rest) =
-            if crosses { (lead.abs().ratio(excess.abs()), then) } else { (S::ZERO, now) };
-        let x = before + (self.tick - before * now).ratio(rest);
-
-        let [half, whole] = x.lags();
-        let lag = S::of(effective) - drive;
-        let effective_after = |lags: Lags<S::Share>| {
-            S::advanced_by_two(effective, (excess, lags.delayed), (-lag, lags.response))
-        };
-        // Rounding must not make the state negative.
-        let end = effective_after(whole);
-        Excited {
-            intermediate: S::advanced(intermediate, -excess, whole.response),
-            effective_at_middle: S::of(effective_after(half)),
-            effective: if S::of(end) < S::ZERO { S::ZERO.lag_state() } else { end },
+        let tick = types[i].excitation.tick;
+        if (lead[i] * now[i]).is_between_0_and(excess[i] * tick) {
+            cold_path();
+            let before = lead[i].abs().ratio(excess[i].abs());
+            let then = if rises[i] { falling[i] } else { rising[i] };
+            x[i] = before + (tick - before * now[i]).ratio(then);
         }
     }
+
+    let lags = x.map(S::lags);
+    let lag = types.each_ref().map(|t| S::of(t.effective) - t.drive);
+    let middle: [S; N] = from_fn(|i| {
+        let Lags { response, delayed } = lags[i][0];
+        let changes = ((excess[i], delayed), (-lag[i], response));
+        S::of(S::advanced_by_two(types[i].effective, changes.0, changes.1))
+    });
+    let end: [S::LagState; N] = from_fn(|i| {
+        let Lags { response, delayed } = lags[i][1];
+        let changes = ((excess[i], delayed), (-lag[i], response));
+        S::advanced_by_two(types[i].effective, changes.0, changes.1)
+    });
+    from_fn(|i| Excited {
+        intermediate: S::advanced(types[i].intermediate, -excess[i], lags[i][1].response),
+        effective_at_middle: middle[i],
+        // Rounding must not make the state negative.
+        effective: if S::of(end[i]).is_negative() { S::ZERO.lag_state() } else { end[i] },
+    })
 }

@@ -8,6 +8,7 @@ use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use core::array::from_fn;
 
 /// Coefficients of FL.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,13 +137,17 @@ impl<S: Scalar> ForceLength<S> {
             smooth: params.smooth(domain).map(S::from_f64),
         }
     }
+}
 
-    /// FL (0..1) at a distance from the optimal length.
-    #[inline(always)]
-    pub(crate) fn at(&self, distance: &Distance<S>) -> S {
-        let (smooth, _) = distance.offset.polynomial(&self.smooth);
-        S::ONE - (self.roundness * distance.logarithm + smooth).weibull().0
-    }
+/// FL (0..1) of all types at a distance from the optimal length.
+#[inline(always)]
+pub(crate) fn at<S: Scalar, const N: usize>(
+    types: [&ForceLength<S>; N],
+    distance: &Distance<S>,
+) -> [S; N] {
+    let smooth = distance.offset.polynomials(types.map(|t| &t.smooth));
+    let powers: [S; N] = from_fn(|i| types[i].roundness * distance.logarithm + smooth[i]);
+    powers.map(|power| S::ONE - power.weibull())
 }
 
 #[cfg(test)]
@@ -156,7 +161,10 @@ pub(crate) mod tests {
     /// FL of a type at any length.
     pub(crate) fn force_length<S: Scalar>(params: &ForceLengthParams) -> impl Fn(S) -> S {
         let (optimal, relation) = (OptimalLength::new(), ForceLength::new(params, FASCICLE_DOMAIN));
-        move |length| relation.at(&optimal.distance(length))
+        move |length| {
+            let [value] = at([&relation], &optimal.distance(length));
+            value
+        }
     }
 
     pub(crate) fn papers_force_length(p: &ForceLengthParams, l: f64) -> f64 {

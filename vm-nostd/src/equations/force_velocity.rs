@@ -157,28 +157,94 @@ pub(crate) struct VelocityCurve<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// FV, its slope and half its curvature with respect to V, `time` ticks after mid-tick of a
-    /// `curve`, on the branch selected by `lengthening`, at a velocity of that branch. Beyond V_max
-    /// FV is 0, where the paper's expression is negative.
+    /// n and d of the branch selected by `lengthening`, `time` ticks after mid-tick of a `curve`.
     #[inline(always)]
-    pub(crate) fn on(
-        &self,
-        curve: &VelocityCurve<S>,
-        time: S,
-        lengthening: bool,
-        velocity: S,
-    ) -> (S, S, S) {
-        let (numerator, denominator) = if lengthening {
-            (curve.lengthening.at(time), self.per_lengthening)
+    pub(crate) fn branch(&self, curve: &VelocityCurve<S>, time: S, lengthening: bool) -> Branch<S> {
+        if lengthening {
+            Branch { numerator: curve.lengthening.at(time), denominator: self.per_lengthening }
         } else {
-            (self.per_maximum, curve.shortening.at(time))
-        };
-        if velocity <= self.maximum_velocity {
-            return (S::ZERO, S::ZERO, S::ZERO);
+            Branch { numerator: self.per_maximum, denominator: curve.shortening.at(time) }
         }
-        let reciprocal = velocity.reciprocal_of_one_plus(denominator);
-        let rise = (numerator - denominator) * reciprocal;
+    }
+}
+
+impl<S: Scalar> ForceVelocity<S> {
+    /// Whether a velocity is at or beyond V_max, where FV is 0, and the paper's expression negative.
+    pub(crate) fn is_beyond(&self, velocity: S) -> bool {
+        velocity <= self.maximum_velocity
+    }
+}
+
+/// One branch of FV at one length: (1 + n V)/(1 + d V).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch<S> {
+    /// n.
+    pub(crate) numerator: S,
+    /// d.
+    pub(crate) denominator: S,
+}
+
+/// FV at one velocity, its slope and half its curvature with respect to V.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Value<S> {
+    pub(crate) value: S,
+    pub(crate) slope: S,
+    pub(crate) half_curvature: S,
+}
+
+impl<S: Scalar> Branch<S> {
+    /// A branch that is 0 at a velocity of shortening, as FV is beyond V_max.
+    pub(crate) fn beyond(velocity: S) -> Self {
+        Self { numerator: (-velocity).reciprocal(), denominator: S::ZERO }
+    }
+
+    /// FV of the branch at a velocity of it, given 1/(1 + d V).
+    #[inline(always)]
+    pub(crate) fn at(&self, velocity: S, reciprocal: S) -> Value<S> {
+        let rise = (self.numerator - self.denominator) * reciprocal;
         let slope = rise * reciprocal;
-        (S::ONE + rise * velocity, slope, -(denominator * reciprocal * slope))
+        Value {
+            value: S::ONE + rise * velocity,
+            slope,
+            half_curvature: -(self.denominator * reciprocal * slope),
+        }
+    }
+}
+
+impl<S: Scalar> ForceVelocity<S> {
+    /// FV, its slope and half its curvature at a velocity above V_max, as the mechanics take them.
+    pub(crate) fn on(&self, curve: &VelocityCurve<S>, time: S, velocity: S) -> Value<S> {
+        let branch = self.branch(curve, time, velocity > S::ZERO);
+        let [reciprocal] = velocity.reciprocals_of_one_plus([branch.denominator]);
+        branch.at(velocity, reciprocal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::presets::PAPER_MUSCLE;
+    use crate::scalar::fixed::Fixed;
+
+    #[test]
+    fn beyond_the_greatest_velocity_it_is_0() {
+        for fiber in PAPER_MUSCLE.fibers {
+            let params = fiber.fiber_type.force_velocity;
+            let (least, most) = (params.maximum_velocity, params.maximum_velocity + 0.1);
+            let (f64, fixed) =
+                (ForceVelocity::<f64>::new(&params), ForceVelocity::<Fixed>::new(&params));
+            assert!(f64.is_beyond(least) && !f64.is_beyond(most));
+            assert!(
+                fixed.is_beyond(Fixed::from_f64(least)) && !fixed.is_beyond(Fixed::from_f64(most))
+            );
+        }
+        for velocity in [-0.2, -3.0, -60.0] {
+            let [of_f64] = velocity.reciprocals_of_one_plus([0.0]);
+            assert!(Branch::<f64>::beyond(velocity).at(velocity, of_f64).value.abs() < 1e-15);
+            let velocity = Fixed::from_f64(velocity);
+            let [of_fixed] = velocity.reciprocals_of_one_plus([Fixed::ZERO]);
+            let value = Branch::<Fixed>::beyond(velocity).at(velocity, of_fixed).value.to_f64();
+            assert!(value.abs() < 60.0 / 16_777_216.0 + 1e-7, "{value}");
+        }
     }
 }

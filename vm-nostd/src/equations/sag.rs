@@ -6,6 +6,7 @@ use crate::scalar::Scalar;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
+use core::hint::cold_path;
 
 /// Coefficients of sag.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,11 +76,10 @@ impl<S: Scalar> Sag<S> {
 
 /// Share of a tick (0..1) in which a frequency from `start` to `end` is at or above `level`.
 pub(crate) fn share_above<S: Scalar>(start: S, end: S, level: S) -> S {
-    if start >= level {
-        if end >= level { S::ONE } else { (start - level).ratio(start - end) }
-    } else if end >= level {
-        (end - level).ratio(end - start)
-    } else {
-        S::ZERO
+    let (fired, fires) = (start >= level, end >= level);
+    if fired == fires {
+        return if fires { S::ONE } else { S::ZERO };
     }
+    cold_path();
+    if fired { (start - level).ratio(start - end) } else { (end - level).ratio(end - start) }
 }

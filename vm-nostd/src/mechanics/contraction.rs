@@ -14,9 +14,10 @@
 //! - Damping: the midpoint rule would leave velocity that damping has long consumed, to alternate
 //!   for ever. How much of it is left is taken from the slope of FV; see [`decay`].
 
+use super::abreast::{dot, zip};
 use super::decay;
 use crate::checksum::summed;
-use crate::equations::force_velocity::VelocityCurve;
+use crate::equations::force_velocity::{Branch, VelocityCurve};
 use crate::equations::tendon::Tendon;
 use crate::equations::yielding::{SPREAD, Speed};
 use crate::fiber::Fiber;
@@ -28,6 +29,7 @@ use crate::scalar::Scalar;
 use crate::scalar::float::{square_root, tangent};
 use crate::tick::course::Course;
 use crate::tick::time_step::TimeStep;
+use core::hint::cold_path;
 
 /// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;
@@ -39,10 +41,9 @@ const MOST_SUBSTEPS: u8 = 40;
 /// w h/2 that inertia is fitted for at most: at pi/2 there would be none left, and from here on
 /// what little is left makes errors after a jerk grow again.
 const FASTEST_RINGING: f64 = 1.1;
-/// The mechanics count as settled if no balance at a velocity foreseen is worse, F0.
+/// The mechanics count as settled if no net force at a predicted velocity is more, F0.
 const SETTLED: f64 = 0.5;
-/// What the filaments resist a change of velocity with counts as no less, F0 s/L_ce0: far below any
-/// viscosity. Where it is less, their curve counts as straighter than it is.
+/// Lower bound on dF_ce/dV, which is a divisor, F0 s/L_ce0: far below any viscosity.
 const LEAST_STEEPNESS: f64 = 1e-5;
 
 /// Motion of the fascicles since the tick's start.
@@ -97,13 +98,15 @@ pub(crate) struct Contraction<S: Scalar> {
     /// Ticks per second.
     tick_rate: S::Factor,
     speed: S,
+    /// The slowest V_max of the types, L_ce0/s.
+    slowest: S,
     /// 1 over the unit of a variance of speeds.
     per_spread: S,
     settled: S,
     least_steepness: S,
 }
 
-summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, per_spread, settled, least_steepness });
+summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, slowest, per_spread, settled, least_steepness });
 
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
@@ -190,6 +193,7 @@ impl<S: Scalar> Contraction<S> {
             tick: S::factor(step.seconds()),
             tick_rate: S::factor(1.0 / step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
+            slowest: S::from_f64(params.shortening_velocity()),
             per_spread: S::from_f64(1.0 / SPREAD),
             settled: S::from_f64(SETTLED),
             least_steepness: S::from_f64(LEAST_STEEPNESS),
@@ -222,15 +226,13 @@ impl<S: Scalar> Contraction<S> {
         let mut motion = Motion { travel: S::ZERO, velocity };
         // Time since the tick's middle, in ticks.
         let mut time = -S::HALF;
-        let (mut worst, mut fastest) = (S::ZERO, S::ZERO);
+        let (mut worst, mut held) = (S::ZERO, false);
         let (mut mean, mut square) = (S::ZERO, S::ZERO);
         for _ in 0..self.substeps {
-            let substep = tick.substep::<R>(&mut motion, time);
-            worst = worst.max(substep.balance);
-            fastest = fastest.max(substep.speed_at_middle);
-            let share = self.substep.share * substep.mean_speed;
-            mean = mean + share;
-            square = square + share * (self.per_spread * substep.mean_speed);
+            let substep = tick.substep::<R>(&mut motion, time, &mut held);
+            worst = worst.max(substep.balance.abs());
+            mean = mean + substep.step;
+            square = square + substep.step * (self.per_spread * substep.speed);
             time = time + self.substep.share;
         }
         Advanced {
@@ -240,7 +242,7 @@ impl<S: Scalar> Contraction<S> {
                 variance: (square - mean * (self.per_spread * mean)).max(S::ZERO),
             },
             settled: worst <= self.settled,
-            held: fastest >= self.speed,
+            held,
         }
     }
 }
@@ -249,10 +251,9 @@ impl<S: Scalar> Contraction<S> {
 struct Passed<S> {
     /// How far the forces were from balance at the predicted velocity, F0.
     balance: S,
-    /// |V| at its middle, L_ce0/s.
-    speed_at_middle: S,
-    /// The magnitude of its mean velocity, L_ce0/s.
-    mean_speed: S,
+    /// The magnitude of its mean velocity, L_ce0/s, and that times its share of the tick.
+    speed: S,
+    step: S,
 }
 
 /// One tick of the mechanics.
@@ -267,7 +268,12 @@ struct Tick<'a, S: Scalar, const N: usize> {
 impl<S: Scalar, const N: usize> Tick<'_, S, N> {
     /// One substep that starts at `time` with `motion` and leaves it as it is at the end.
     #[inline(always)]
-    fn substep<R: RecruitmentTick<S, N>>(&self, motion: &mut Motion<S>, time: S) -> Passed<S> {
+    fn substep<R: RecruitmentTick<S, N>>(
+        &self,
+        motion: &mut Motion<S>,
+        time: S,
+        held: &mut bool,
+    ) -> Passed<S> {
         let (c, element) = (self.contraction, self.contractile);
         let substep = &c.substep;
         let (start, half) = (motion.velocity, substep.half_share);
@@ -283,31 +289,46 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         let slope = inertia + stiffness;
         let constant = -(slope * start + pull.force);
 
-        let gains = element.gains.map(|gain| gain.at(time));
+        let mut gains = element.gains.map(|gain| gain.at(time));
         let passive = element.passive.at(time) + element.passive_slope * motion.travel;
-        let elastic = element.passive_slope * half;
+        let mut elastic = element.passive_slope * half;
 
-        let at_rest =
-            gains.iter().fold(least::<S, R, N>(passive), |sum, gain| sum + *gain).max(S::ZERO);
-        let lengthening = at_rest + constant < S::ZERO;
-        let velocity = if (start > S::ZERO) == lengthening { start } else { S::ZERO };
+        // The sign of the net force at V = 0 is that of the velocity.
+        let at_rest = gains.iter().fold(least::<S, R, N>(passive), |sum, gain| sum + *gain);
+        let lengthening = (at_rest.of_sign(false) + constant).is_negative();
+        let velocity = start.of_sign(!lengthening);
+
+        let mut branches = zip(element.fibers, &element.curves, |fiber, curve| {
+            fiber.force_velocity.branch(curve, time, lengthening)
+        });
+        if velocity <= c.slowest {
+            cold_path();
+            for (index, fiber) in element.fibers.iter().enumerate() {
+                if fiber.force_velocity.is_beyond(velocity) {
+                    branches[index] = Branch::beyond(velocity);
+                    gains[index] = S::ZERO;
+                }
+            }
+        }
+        let reciprocals =
+            velocity.reciprocals_of_one_plus(branches.each_ref().map(|branch| branch.denominator));
+        let values =
+            zip(&branches, &reciprocals, |branch, reciprocal| branch.at(velocity, *reciprocal));
 
         // F_ce', what it gains with velocity and time, at that velocity.
-        let mut force = passive + (c.viscosity + elastic) * velocity;
-        let (mut viscosity, mut elastic, mut rise) = (c.viscosity, elastic, element.passive.change);
-        if R::PASSIVE_ONLY_PULLS && force < S::ZERO {
+        let mut viscosity = c.viscosity;
+        let mut force = passive + (viscosity + elastic) * velocity;
+        let mut rise = element.passive.change;
+        if R::PASSIVE_ONLY_PULLS && force.is_negative() {
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
-        let (mut steepness, mut half_curvature) = (S::ZERO, S::ZERO);
-        let types = element.fibers.iter().zip(&element.curves);
-        for ((gain, course), (fiber, curve)) in gains.iter().zip(&element.gains).zip(types) {
-            let (value, steep, bend) = fiber.force_velocity.on(curve, time, lengthening, velocity);
-            force = force + *gain * value;
-            steepness = steepness + *gain * steep;
-            half_curvature = half_curvature + *gain * bend;
-            rise = rise + course.change * value;
-        }
-        if force < S::ZERO {
+        let mut force = force + dot(&gains, values.each_ref().map(|fv| fv.value));
+        let mut steepness = dot(&gains, values.each_ref().map(|fv| fv.slope));
+        let mut half_curvature = dot(&gains, values.each_ref().map(|fv| fv.half_curvature));
+        let changes = element.gains.map(|gain| gain.change);
+        rise = rise + dot(&changes, values.each_ref().map(|fv| fv.value));
+        if force.is_negative() {
+            cold_path();
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
             (steepness, half_curvature) = (S::ZERO, S::ZERO);
         }
@@ -315,28 +336,28 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         let balance = constant + slope * velocity + force;
         let line = slope + (viscosity + elastic);
         let steepness = steepness.max(c.least_steepness);
-        let (change, secant) = balance.hyperbola_root(line, steepness, half_curvature);
-        let next = velocity + change;
-        let damping = viscosity + steepness * secant;
-        let middle = if lengthening {
-            next.max(S::ZERO).min(c.speed)
-        } else {
-            next.min(S::ZERO).max(-c.speed)
-        };
+        let balanced = balance.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
+        let mut middle = (velocity + balanced.root).of_sign(!lengthening);
+        let usual = middle.abs() < c.speed;
+        if !usual {
+            cold_path();
+            middle = if lengthening { c.speed } else { -c.speed };
+            *held = true;
+        }
 
         // What pulls at the fascicles ever more, though velocity stay: F0 in half the substep.
         let growing = stiffness * (self.path_speed - middle) - elastic * middle - half * rise;
-        let left = decay::left(inertia, damping, middle - start, growing);
+        let left = decay::left(&balanced, middle - start, growing);
         let mean = middle + left.mean;
-        *motion =
-            Motion { travel: motion.travel + substep.share * mean, velocity: middle + left.end };
-        Passed { balance: balance.abs(), speed_at_middle: middle.abs(), mean_speed: mean.abs() }
+        let step = substep.share * mean;
+        *motion = Motion { travel: motion.travel + step, velocity: middle + left.end };
+        Passed { balance, step: step.abs(), speed: mean.abs() }
     }
 }
 
 /// The passive force as the mode takes it.
 fn least<S: Scalar, R: RecruitmentTick<S, N>, const N: usize>(passive: S) -> S {
-    if R::PASSIVE_ONLY_PULLS { passive.max(S::ZERO) } else { passive }
+    if R::PASSIVE_ONLY_PULLS { passive.of_sign(false) } else { passive }
 }
 
 #[cfg(test)]

@@ -8,11 +8,10 @@
 //! recruited types, so that the weights add to 1.
 
 use super::firing::Firing;
-use super::lumped::LumpedState;
+use super::lumped::{self, Advanced, Lumped, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use super::unit::activated;
 use crate::checksum::summed;
-use crate::equations::sag::{SagParams, share_above};
+use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
@@ -21,6 +20,7 @@ use crate::scalar::{Scalar, sealed::Sealed};
 use crate::tick::lag::Lag;
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
+use core::array::from_fn;
 
 /// Natural continuous recruitment. The stimulation frequency is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,8 +119,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
-    ) {
+    ) -> [Recruited<S>; N] {
         let activation = moment.input.activation;
         let start = state.shared;
         // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
@@ -128,48 +127,29 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         let middle = lag.at_middle(start, activation);
         state.shared = lag.at_end(start, activation);
 
-        let mut sum = S::ZERO;
-        for unit in &self.units {
-            sum = sum + (middle - unit.threshold).max(S::ZERO);
-        }
+        let excesses = self.units.each_ref().map(|unit| (middle - unit.threshold).of_sign(false));
+        let sum = excesses.into_iter().fold(S::ZERO, |sum, excess| sum + excess);
         // Where there is nothing to share, any divisor will do.
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
+        // U_eff W.
+        let weights = excesses.map(|excess| middle * excess.scaled(&per_sum));
 
-        let kept = state.fibers.iter_mut().zip(&mut state.activities);
-        for (((unit, (kept, activity)), fiber), yieldings) in
-            self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
-        {
-            let drive = unit.frequency(activation);
-            let before = kept.effective_frequency;
-            let excited = fiber.excitation.advance(
-                (kept.intermediate_frequency, before),
-                drive,
-                drive,
-                activity.predicted,
-                (moment.fascicle_length, moment.reciprocal),
-            );
-            kept.intermediate_frequency = excited.intermediate;
-            kept.effective_frequency = excited.effective;
-            let (start, end) = (S::of(before), S::of(excited.effective));
-            let activation = activated(
-                fiber,
-                &fiber.activation.at(moment.reciprocal),
-                &mut kept.sag,
-                *yieldings,
-                excited.effective_at_middle,
-                share_above(start, end, self.firing),
-            );
-            *activity = activity.next(activation);
-
-            // U_eff W.
-            let weight = middle * (middle - unit.threshold).max(S::ZERO).scaled(&per_sum);
-            let recruitment = Recruited {
-                activation,
-                weight,
-                change_after_jump: None,
-                compression_weight: weight,
-            };
-            recruited(fiber, recruitment);
-        }
+        let drives = self.units.each_ref().map(|unit| unit.frequency(activation));
+        let described = |i: usize, kept| Lumped {
+            fiber: &fibers[i],
+            kept,
+            drive: drives[i],
+            frequency: drives[i],
+            slowing: state.activities[i].predicted,
+            yielding: moment.yieldings[i],
+        };
+        let advanced =
+            lumped::advance_all::<S, false, N>(&mut state.fibers, described, moment, self.firing);
+        from_fn(|i| {
+            let Advanced { activation, .. } = advanced[i];
+            state.activities[i] = state.activities[i].next(activation);
+            let weight = weights[i];
+            Recruited { activation, weight, change_after_jump: None, compression_weight: weight }
+        })
     }
 }

@@ -8,8 +8,10 @@ use super::acting_length::ActingLength;
 use super::firing::Firing;
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick};
 use super::motor_units::MotorUnits;
-use super::unit::{Activity, activated};
+use super::unit::{Activity, sagged};
 use crate::checksum::{Summed, summed};
+use crate::equations::activation_frequency;
+use crate::equations::excitation::{self, Driven};
 use crate::equations::sag::{SagParams, share_above};
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
@@ -151,9 +153,11 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
-    ) {
-        let curves = fibers.each_ref().map(|fiber| fiber.activation.at(moment.reciprocal));
+    ) -> [Recruited<S>; N] {
+        let curves = activation_frequency::curves(
+            fibers.each_ref().map(|f| &f.activation),
+            moment.reciprocal,
+        );
         let mut activations = [S::ZERO; N];
         for (kept, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
             let of_type = fibers.get(unit.fiber).zip(curves.get(unit.fiber));
@@ -165,13 +169,16 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             };
             let drive = unit.firing.frequency(moment.input.activation);
             let before = kept.effective_frequency;
-            let excited = fiber.excitation.advance(
-                (kept.intermediate_frequency, before),
+            let driven = Driven {
+                excitation: &fiber.excitation,
+                intermediate: kept.intermediate_frequency,
+                effective: before,
                 drive,
-                drive,
-                kept.activity.predicted,
-                (moment.fascicle_length, moment.reciprocal),
-            );
+                frequency: drive,
+                slowing: kept.activity.predicted,
+            };
+            let [excited] =
+                excitation::advance([driven], moment.fascicle_length, moment.reciprocal);
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
             let acting_length = A::advance(
@@ -180,31 +187,23 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 kept.activity.predicted,
                 moment,
             );
-            let curve = match acting_length {
-                Some(own) => fiber.activation.at(own.reciprocal()),
-                None => *curve,
+            let [curve] = match acting_length {
+                Some(own) => activation_frequency::curves([&fiber.activation], own.reciprocal()),
+                None => [*curve],
             };
-            let (start, end) = (S::of(before), S::of(excited.effective));
-            let activation = activated(
-                fiber,
-                &curve,
-                &mut kept.sag,
-                *yieldings,
-                excited.effective_at_middle,
-                share_above(start, end, self.firing),
-            );
+            let firing = share_above(S::of(before), S::of(excited.effective), self.firing);
+            let sag = sagged(fiber, &mut kept.sag, firing);
+            let frequency = excited.effective_at_middle * (*yieldings * sag);
+            let activation = curve.at(frequency);
             kept.activity = kept.activity.next(activation);
             *sum = *sum + unit.share * activation;
         }
-        for (fiber, activation) in fibers.iter().zip(activations) {
-            let recruitment = Recruited {
-                activation,
-                weight: S::ONE,
-                change_after_jump: None,
-                compression_weight: S::ONE,
-            };
-            recruited(fiber, recruitment);
-        }
+        activations.map(|activation| Recruited {
+            activation,
+            weight: S::ONE,
+            change_after_jump: None,
+            compression_weight: S::ONE,
+        })
     }
 }
 

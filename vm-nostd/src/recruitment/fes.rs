@@ -5,9 +5,8 @@
 //! driven by U instead and carry the recruitment. Rising Tf = Tf1 L² + Tf2 f_env_i, falling
 //! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
 
-use super::lumped::LumpedState;
+use super::lumped::{self, Advanced, Lumped, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use super::unit::activated;
 use crate::checksum::summed;
 use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
@@ -18,6 +17,7 @@ use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
+use core::array::from_fn;
 
 /// Intramuscular FES: activation is the strength of the stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,47 +109,35 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-        mut recruited: impl FnMut(&Fiber<S>, Recruited<S>),
-    ) {
+    ) -> [Recruited<S>; N] {
         let input = &moment.input;
         let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
         // Af takes the frequency as it is: where that steps, so does Af.
         let first = self.first_frequency(input.stimulation_frequency);
         let jumps = first != S::of(state.shared);
         state.shared = first.lag_state();
-        let kept = state.fibers.iter_mut();
-        for (((unit, kept), fiber), yieldings) in
-            self.units.iter().zip(kept).zip(fibers).zip(&moment.yieldings)
-        {
-            let frequency =
-                S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency);
-            let before = kept.effective_frequency;
-            let excited = fiber.excitation.advance(
-                (kept.intermediate_frequency, before),
-                input.activation,
-                frequency,
-                slowing,
-                (moment.fascicle_length, moment.reciprocal),
-            );
-            kept.intermediate_frequency = excited.intermediate;
-            kept.effective_frequency = excited.effective;
-            let activation = activated(
-                fiber,
-                &fiber.activation.at(moment.reciprocal),
-                &mut kept.sag,
-                *yieldings,
-                frequency,
-                if frequency > self.firing { S::ONE } else { S::ZERO },
-            );
-            let weight = unit.fraction * excited.effective_at_middle;
-            let recruitment = Recruited {
+        let frequencies = self.units.each_ref().map(|unit| {
+            S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency)
+        });
+        let described = |i: usize, kept| Lumped {
+            fiber: &fibers[i],
+            kept,
+            drive: input.activation,
+            frequency: frequencies[i],
+            slowing,
+            yielding: moment.yieldings[i],
+        };
+        let advanced =
+            lumped::advance_all::<S, true, N>(&mut state.fibers, described, moment, self.firing);
+        from_fn(|i| {
+            let Advanced { effective, change, activation } = advanced[i];
+            let fraction = self.units[i].fraction;
+            Recruited {
                 activation,
-                weight,
-                change_after_jump: jumps
-                    .then(|| unit.fraction * (S::of(excited.effective) - S::of(before))),
-                compression_weight: unit.fraction,
-            };
-            recruited(fiber, recruitment);
-        }
+                weight: fraction * effective,
+                change_after_jump: jumps.then(|| fraction * change),
+                compression_weight: fraction,
+            }
+        })
     }
 }

@@ -64,15 +64,13 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError>;
 
-    /// Advances recruitment, excitation and sag by one tick and calls `recruited` for each type in
-    /// order.
+    /// Advances recruitment, excitation and sag by one tick; returns how each type is recruited.
     fn advance(
         &self,
         fibers: &[Fiber<S>; N],
         state: &mut Self::State,
         moment: &Moment<S, N>,
-        recruited: impl FnMut(&Fiber<S>, Recruited<S>),
-    );
+    ) -> [Recruited<S>; N];
 }
 
 /// Inputs of recruitment during a tick.

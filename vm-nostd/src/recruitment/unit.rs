@@ -1,25 +1,17 @@
 //! What the modes share in a tick of a unit: a fibre type or a motor unit.
 
-use crate::equations::activation_frequency::ActivationCurve;
 use crate::fiber::Fiber;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::tick::range::share;
 
-/// Advances S of a unit by one tick, of which it is `firing` for a share, and says how active it
-/// is: Af at the tick's middle, for a frequency (f0.5) and Y there, and the curve of its length.
+/// Advances S of a unit by one tick, of which it is `firing` for a share, and gives S at the tick's
+/// middle.
 #[inline(always)]
-pub(crate) fn activated<S: Scalar>(
-    fiber: &Fiber<S>,
-    curve: &ActivationCurve<S>,
-    sag: &mut S::LagState,
-    yielding: S,
-    frequency: S,
-    firing: S,
-) -> S {
+pub(crate) fn sagged<S: Scalar>(fiber: &Fiber<S>, sag: &mut S::LagState, firing: S) -> S {
     let before = S::of(*sag);
     *sag = fiber.sag.advance(*sag, firing);
-    curve.at(frequency * (yielding * (before + S::of(*sag)).half()))
+    (before + S::of(*sag)).half()
 }
 
 /// Af of a unit from tick to tick: what its fall time has to be told before Af is.

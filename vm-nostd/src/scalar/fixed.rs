@@ -18,7 +18,7 @@ pub use number::Fixed;
 pub(crate) use number::saturations;
 
 use super::sealed::Sealed;
-use super::{Lags, Scalar};
+use super::{Balance, Lags, Scalar};
 use crate::checksum::{Checksum, Summed};
 use factor::nearest;
 use fixed::types::{I16F16, I23F9};
@@ -66,6 +66,7 @@ impl Scalar for Fixed {
     const HALF: Self = Self::from_bits(ONE / 2);
     const LEAST: Self = Self::from_bits(1);
     const LARGEST_COEFFICIENT: f64 = 60.0;
+    const SIDE_BY_SIDE: bool = false;
     const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
     const FORCE_STEP: f64 = 1e-3;
     const LONGEST_PATH: f64 = 4.19;
@@ -115,14 +116,31 @@ impl Scalar for Fixed {
         Self::from_bits(self.to_bits() >> 1)
     }
     #[inline(always)]
-    fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self) {
-        let (value, slope) =
-            polynomial::at(self.to_bits(), terms.iter().map(|term| term.to_bits()));
-        (Self::from_bits(value), Self::from_bits(slope))
+    fn polynomials<const N: usize, const TERMS: usize>(
+        self,
+        terms: [&[Self; TERMS]; N],
+    ) -> [Self; N] {
+        terms.map(|terms| {
+            Self::from_bits(polynomial::at(self.to_bits(), terms.iter().map(|t| t.to_bits())))
+        })
     }
 
     fn reciprocal(self) -> Self {
         Self::from_bits(quotient::reciprocal(self.to_bits()))
+    }
+    #[inline(always)]
+    fn ratios<const N: usize>(mut dividends: [Self; N], divisors: [Self; N]) -> [Self; N] {
+        for (dividend, divisor) in dividends.iter_mut().zip(divisors) {
+            *dividend = dividend.ratio(divisor);
+        }
+        dividends
+    }
+    #[inline(always)]
+    fn reciprocals<const N: usize>(mut numbers: [Self; N]) -> [Self; N] {
+        for number in &mut numbers {
+            *number = number.reciprocal();
+        }
+        numbers
     }
     fn reciprocal_factor(self) -> Factor {
         quotient::reciprocal_factor(self.to_bits())
@@ -139,20 +157,44 @@ impl Scalar for Fixed {
         let (value, slope) = pieces::softplus(self.to_bits());
         (Self::from_bits(value), Self::from_bits(slope))
     }
-    fn weibull(self) -> (Self, Self) {
-        let (value, slope) = pieces::weibull(self.to_bits());
-        (Self::from_bits(value), Self::from_bits(slope))
+    fn weibull(self) -> Self {
+        Self::from_bits(pieces::weibull(self.to_bits()))
     }
     #[inline(always)]
-    fn reciprocal_of_one_plus(self, factor: Self) -> Self {
-        Self::from_bits(quotient::reciprocal_of_one_plus(factor.to_bits(), self.to_bits()))
+    fn reciprocals_of_one_plus<const N: usize>(self, mut factors: [Self; N]) -> [Self; N] {
+        for factor in &mut factors {
+            let reciprocal = quotient::reciprocal_of_one_plus(factor.to_bits(), self.to_bits());
+            *factor = Self::from_bits(reciprocal);
+        }
+        factors
     }
     #[inline(always)]
-    fn hyperbola_root(self, line: Self, steepness: Self, half_curvature: Self) -> (Self, Self) {
-        let [residual, line, steepness, half_curvature] =
-            [self, line, steepness, half_curvature].map(Self::to_bits);
-        let (root, share) = root::hyperbola_root(residual, line, steepness, half_curvature);
-        (Self::from_bits(root), Self::from_bits(share))
+    fn is_between_0_and(self, end: Self) -> bool {
+        let rest = end.to_bits().saturating_sub(self.to_bits());
+        self.to_bits() != 0 && (self.to_bits() ^ rest) >= 0
+    }
+    #[inline(always)]
+    fn is_negative(self) -> bool {
+        self.to_bits() < 0
+    }
+    #[inline(always)]
+    fn of_sign(self, negative: bool) -> Self {
+        if (self.to_bits() < 0) == negative { self } else { Self::from_bits(0) }
+    }
+    #[inline(always)]
+    fn hyperbola_root(
+        self,
+        line: Self,
+        steepness: Self,
+        half_curvature: Self,
+        inertia: Self,
+        viscosity: Self,
+    ) -> Balance<Self> {
+        let bits = [self, line, steepness, half_curvature].map(Self::to_bits);
+        let (root, share) = root::hyperbola_root(bits);
+        let damping = viscosity + steepness * Self::from_bits(share);
+        let reciprocal = (inertia + damping).reciprocal();
+        Balance { root: Self::from_bits(root), damped: damping * reciprocal, reciprocal }
     }
 
     fn lag_state(self) -> i64 {

@@ -4,7 +4,7 @@ mod double;
 mod single;
 
 use super::sealed::Sealed;
-use super::{Lags, Scalar};
+use super::{Balance, Lags, Scalar};
 
 /// In `f64`, for computations when a muscle is built.
 pub(crate) use double::{one_minus_exp, square_root, tangent};
@@ -28,6 +28,7 @@ macro_rules! float {
             const HALF: Self = 0.5;
             const LEAST: Self = 1e-36;
             const LARGEST_COEFFICIENT: f64 = f64::MAX;
+            const SIDE_BY_SIDE: bool = true;
             const MAXIMAL_FORCES: (f64, f64) = (0.0, f64::MAX);
             const FORCE_STEP: f64 = 0.0;
             const LONGEST_PATH: f64 = f64::MAX;
@@ -66,16 +67,17 @@ macro_rules! float {
                 0.5 * self
             }
             #[inline(always)]
-            fn polynomial<const N: usize>(self, terms: &[Self; N]) -> (Self, Self) {
-                let [lower @ .., before, last] = terms.as_slice() else {
-                    return (terms.iter().sum(), 0.0);
-                };
-                let (mut value, mut slope) = (before + last * self, *last);
-                for term in lower.iter().rev() {
-                    slope = value + slope * self;
-                    value = term + value * self;
+            fn polynomials<const N: usize, const TERMS: usize>(
+                self,
+                terms: [&[Self; TERMS]; N],
+            ) -> [Self; N] {
+                let mut values = [0.0; N];
+                for power in (0..TERMS).rev() {
+                    for (value, terms) in values.iter_mut().zip(&terms) {
+                        *value = terms[power] + *value * self;
+                    }
                 }
-                (value, slope)
+                values
             }
 
             fn reciprocal(self) -> Self {
@@ -83,6 +85,31 @@ macro_rules! float {
             }
             fn reciprocal_factor(self) -> Self {
                 1.0 / self
+            }
+            #[inline(always)]
+            fn ratios<const N: usize>(dividends: [Self; N], divisors: [Self; N]) -> [Self; N] {
+                let mut ratios = Self::reciprocals(divisors);
+                for (ratio, dividend) in ratios.iter_mut().zip(dividends) {
+                    *ratio *= dividend;
+                }
+                ratios
+            }
+            /// One division for all: each reciprocal is that of the product of all, times the
+            /// others.
+            #[inline(always)]
+            fn reciprocals<const N: usize>(numbers: [Self; N]) -> [Self; N] {
+                let mut product = 1.0;
+                let mut reciprocals = numbers.map(|number| {
+                    let before = product;
+                    product *= number;
+                    before
+                });
+                let mut rest = 1.0 / product;
+                for (reciprocal, number) in reciprocals.iter_mut().zip(&numbers).rev() {
+                    *reciprocal *= rest;
+                    rest *= number;
+                }
+                reciprocals
             }
 
             #[inline(always)]
@@ -98,11 +125,24 @@ macro_rules! float {
                 $kernels::softplus(self)
             }
             #[inline(always)]
-            fn weibull(self) -> (Self, Self) {
+            fn weibull(self) -> Self {
                 $kernels::weibull(self)
             }
-            fn reciprocal_of_one_plus(self, factor: Self) -> Self {
-                1.0 / (1.0 + factor * self)
+            #[inline(always)]
+            fn reciprocals_of_one_plus<const N: usize>(self, factors: [Self; N]) -> [Self; N] {
+                Self::reciprocals(factors.map(|factor| 1.0 + factor * self))
+            }
+            #[inline(always)]
+            fn is_between_0_and(self, end: Self) -> bool {
+                self * (end - self) > 0.0
+            }
+            #[inline(always)]
+            fn is_negative(self) -> bool {
+                self.is_sign_negative()
+            }
+            #[inline(always)]
+            fn of_sign(self, negative: bool) -> Self {
+                if self.is_sign_negative() == negative { self } else { 0.0 }
             }
             #[inline(always)]
             fn hyperbola_root(
@@ -110,7 +150,9 @@ macro_rules! float {
                 line: Self,
                 steepness: Self,
                 half_curvature: Self,
-            ) -> (Self, Self) {
+                inertia: Self,
+                viscosity: Self,
+            ) -> Balance<Self> {
                 // Times steepness² (1 + bend u) it is quadratic; bend = -half_curvature/steepness.
                 let straight = steepness * line;
                 let square = steepness * steepness;
@@ -120,12 +162,20 @@ macro_rules! float {
                 let difference = straight + bent - square;
                 let discriminant = difference * difference + 4.0 * straight * square;
                 let root = $kernels::square_root(discriminant);
-                // The root is at least |difference|: each sum is smaller only by rounding, and only
-                // if both of its terms are large.
-                let whole = Scalar::max(linear + root, 2.0 * straight);
-                let after = Scalar::max(whole + 2.0 * bent, 2.0 * square);
-                let reciprocal = 1.0 / (whole * after);
-                (-2.0 * self * steepness * (after * reciprocal), whole * (whole * reciprocal))
+                // The root is more than |difference|: neither sum is below its product but by the
+                // rounding of its terms, which is less than that excess.
+                let whole = linear + root;
+                let after = whole + 2.0 * bent;
+                // The secant is steepness whole/after. One division for both quotients.
+                let damping = viscosity * after + steepness * whole;
+                let all = inertia * after + damping;
+                let reciprocal = 1.0 / (whole * all);
+                let per_all = whole * reciprocal;
+                Balance {
+                    root: -2.0 * self * steepness * (all * reciprocal),
+                    damped: damping * per_all,
+                    reciprocal: after * per_all,
+                }
             }
 
             fn abs(self) -> Self {
@@ -270,12 +320,18 @@ mod tests {
     #[test]
     fn roots_cancel_the_residual_on_the_branch_through_0() {
         over_balances(|residual, line, steepness, half_curvature| {
-            let (root, share) = residual.hyperbola_root(line, steepness, half_curvature);
+            let (inertia, viscosity) = (0.3, 0.01);
+            let found =
+                residual.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
+            let root = found.root;
             let below = 1.0 - half_curvature / steepness * root;
             assert!(below > 0.0, "{residual} {line} {steepness} {half_curvature}: {root}");
-            assert!((share * below - 1.0).abs() < 1e-4, "{share} {below}");
-            let left = residual + line * root + steepness * share * root;
+            let secant = steepness / below;
+            let left = residual + line * root + secant * root;
             assert!(left.abs() <= 1e-6 * residual.abs(), "{root}: {left} of {residual}");
+            let damping = viscosity + secant;
+            assert!((found.reciprocal * (inertia + damping) - 1.0).abs() < 1e-4, "{found:?}");
+            assert!((found.damped - damping / (inertia + damping)).abs() < 1e-4, "{found:?}");
         });
     }
 
@@ -283,20 +339,45 @@ mod tests {
     fn roots_in_f32_agree_with_f64_except_for_cancellation() {
         over_balances(|residual, line, steepness, half_curvature| {
             let [r, l, s, h] = [residual, line, steepness, half_curvature].map(|x| x as f32);
-            let found = r.hyperbola_root(l, s, h);
+            let found = r.hyperbola_root(l, s, h, 0.3, 0.01);
             let [r, l, s, h] = [r, l, s, h].map(f64::from);
-            let exact = r.hyperbola_root(l, s, h);
-            // Next to a large product the line's term is rounded, and in the secant the steepness':
-            // if the least steepness stands for 0, few of its bits remain.
+            let exact = r.hyperbola_root(l, s, h, f64::from(0.3_f32), f64::from(0.01_f32));
+            // The square root is up to 5e-5 too large. Next to a large product the line's term is
+            // rounded, and in the secant the steepness': if the least steepness stands for 0, few
+            // of its bits remain.
             let bent = (r * h).abs();
-            let of_root = 1e-5 * (1.0 + bent / (l * s));
-            let of_share = of_root + 2.2e-6 * bent / (s * s);
-            for (found, exact, bound) in [(found.0, exact.0, of_root), (found.1, exact.1, of_share)]
-            {
-                let relative = (f64::from(found) - exact).abs() / exact.abs().max(1e-30);
-                assert!(relative <= bound, "{r} {l} {s} {h}: {found} {exact}");
+            let most = s * l + s * s + bent;
+            let of_root = 1.1e-4 * most / (s * l);
+            let of_damping = 1.1e-4 * (most / (s * l) + most / (s * s));
+            let relative =
+                |found: f32, exact: f64| (f64::from(found) - exact).abs() / exact.abs().max(1e-30);
+            for (error, bound) in [
+                (relative(found.root, exact.root), of_root),
+                (relative(found.damped, exact.damped), of_damping),
+                (relative(found.reciprocal, exact.reciprocal), of_damping),
+            ] {
+                assert!(error <= bound, "{r} {l} {s} {h}: {found:?} {exact:?}");
             }
+            assert!(found.root * residual as f32 <= 0.0 && (0.0..=1.0).contains(&found.damped));
         });
+    }
+
+    #[test]
+    fn no_balance_of_hostile_numbers_is_undefined() {
+        let any = [0.0, 1e-30, 1e-8, 1e-3, 1.0, 30.0, 1e4, 1e7_f32];
+        for residual in any.into_iter().flat_map(|x| [x, -x]) {
+            for half_curvature in any.into_iter().flat_map(|x| [x, -x]) {
+                for (line, steepness) in
+                    any[3..7].iter().flat_map(|line| [3e-6, 1e-2, 3.0, 1e3].map(|s| (*line, s)))
+                {
+                    let found = residual.hyperbola_root(line, steepness, half_curvature, 1e-3, 0.0);
+                    let what = format!("{residual} {line} {steepness} {half_curvature}: {found:?}");
+                    assert!(found.root.is_finite() && found.root * residual <= 0.0, "{what}");
+                    assert!((0.0..=1.000_001).contains(&found.damped), "{what}");
+                    assert!(found.reciprocal >= 0.0 && found.reciprocal.is_finite(), "{what}");
+                }
+            }
+        }
     }
 
     #[test]

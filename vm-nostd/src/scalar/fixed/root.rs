@@ -14,12 +14,7 @@ use crate::scalar::series;
 /// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has
 /// only its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
 /// discriminant, a square of that and four times a product, below 2^60.
-pub(super) fn hyperbola_root(
-    residual: i32,
-    line: i32,
-    steepness: i32,
-    half_curvature: i32,
-) -> (i32, i32) {
+pub(super) fn hyperbola_root([residual, line, steepness, half_curvature]: [i32; 4]) -> (i32, i32) {
     let products = [
         exact(steepness, line),
         exact(steepness, steepness),
@@ -110,7 +105,7 @@ mod tests {
                     for step in -1000..=1000 {
                         let residual = q(f64::from(step) * 0.004);
                         let (k, s, h) = (q(line), q(steepness), q(-bend * steepness));
-                        let found = hyperbola_root(residual, k, s, h);
+                        let found = hyperbola_root([residual, k, s, h]);
                         // The same in f64, from the rounded numbers.
                         let (residual, k, s, h) = (f(residual), f(k), f(s), f(h));
                         let parts = [s * k, s * s, residual * h, residual * s];
@@ -147,7 +142,7 @@ mod tests {
         let positive = [1, 168, 1 << 20, 1 << 24, i32::MAX];
         for (residual, half_curvature) in any.iter().flat_map(|a| any.map(|b| (*a, b))) {
             for (line, steepness) in positive.iter().flat_map(|a| positive.map(|b| (*a, b))) {
-                let (root, share) = hyperbola_root(residual, line, steepness, half_curvature);
+                let (root, share) = hyperbola_root([residual, line, steepness, half_curvature]);
                 let what = format!("{residual} {line} {steepness} {half_curvature}");
                 assert!(i64::from(root) * i64::from(residual) <= 0, "{what}: {root}");
                 assert!(share >= 0, "{what}: {share}");
