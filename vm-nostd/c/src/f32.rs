@@ -13,11 +13,11 @@ use crate::units::VmUnits;
 use model::{Input, Output};
 
 /// Bytes of memory of a muscle without fibre types, and of each type.
-pub const VM_MUSCLE_F32_BASE: usize = 232;
+pub const VM_MUSCLE_F32_BASE: usize = 248;
 /// Each type.
 pub const VM_MUSCLE_F32_PER_TYPE: usize = 176;
 /// Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
-pub const VM_UNITS_F32_BASE: usize = 4320;
+pub const VM_UNITS_F32_BASE: usize = 4336;
 /// Each type.
 pub const VM_UNITS_F32_PER_TYPE: usize = 144;
 /// Bytes of memory of an inverse without fibre types, and of each type.
@@ -25,7 +25,7 @@ pub const VM_STEADY_F32_BASE: usize = 160;
 /// Each type.
 pub const VM_STEADY_F32_PER_TYPE: usize = 64;
 /// Bytes of a VmMuscleF32: two types.
-pub const VM_MUSCLE_F32_SIZE: usize = 584;
+pub const VM_MUSCLE_F32_SIZE: usize = 600;
 /// Bytes of a VmSteadyF32: two types.
 pub const VM_STEADY_F32_SIZE: usize = 288;
 /// Bytes of a VmFatigueF32.

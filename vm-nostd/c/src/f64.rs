@@ -13,11 +13,11 @@ use crate::units::VmUnits;
 use model::{Input, Output};
 
 /// Bytes of memory of a muscle without fibre types, and of each type.
-pub const VM_MUSCLE_F64_BASE: usize = 456;
+pub const VM_MUSCLE_F64_BASE: usize = 488;
 /// Each type.
 pub const VM_MUSCLE_F64_PER_TYPE: usize = 352;
 /// Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
-pub const VM_UNITS_F64_BASE: usize = 8104;
+pub const VM_UNITS_F64_BASE: usize = 8136;
 /// Each type.
 pub const VM_UNITS_F64_PER_TYPE: usize = 288;
 /// Bytes of memory of an inverse without fibre types, and of each type.
@@ -25,7 +25,7 @@ pub const VM_STEADY_F64_BASE: usize = 312;
 /// Each type.
 pub const VM_STEADY_F64_PER_TYPE: usize = 128;
 /// Bytes of a VmMuscleF64: two types.
-pub const VM_MUSCLE_F64_SIZE: usize = 1160;
+pub const VM_MUSCLE_F64_SIZE: usize = 1192;
 /// Bytes of a VmSteadyF64: two types.
 pub const VM_STEADY_F64_SIZE: usize = 568;
 /// Bytes of a VmFatigueF64.

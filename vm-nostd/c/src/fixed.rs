@@ -13,11 +13,11 @@ use crate::units::VmUnits;
 use model::{Fixed, Input, Output};
 
 /// Bytes of memory of a muscle without fibre types, and of each type.
-pub const VM_MUSCLE_FIXED_BASE: usize = 288;
+pub const VM_MUSCLE_FIXED_BASE: usize = 304;
 /// Each type.
 pub const VM_MUSCLE_FIXED_PER_TYPE: usize = 208;
 /// Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
-pub const VM_UNITS_FIXED_BASE: usize = 5912;
+pub const VM_UNITS_FIXED_BASE: usize = 5928;
 /// Each type.
 pub const VM_UNITS_FIXED_PER_TYPE: usize = 160;
 /// Bytes of memory of an inverse without fibre types, and of each type.
@@ -25,7 +25,7 @@ pub const VM_STEADY_FIXED_BASE: usize = 216;
 /// Each type.
 pub const VM_STEADY_FIXED_PER_TYPE: usize = 72;
 /// Bytes of a VmMuscleFixed: two types.
-pub const VM_MUSCLE_FIXED_SIZE: usize = 704;
+pub const VM_MUSCLE_FIXED_SIZE: usize = 720;
 /// Bytes of a VmSteadyFixed: two types.
 pub const VM_STEADY_FIXED_SIZE: usize = 360;
 /// Bytes of a VmFatigueFixed.

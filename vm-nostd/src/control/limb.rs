@@ -78,8 +78,7 @@ impl<S: Scalar> Limb<S> {
 
     /// The torque of a motion: angle (rad), velocity (rad/s), acceleration (rad/s²).
     pub(super) fn torque(&self, angle: S, velocity: S, acceleration: S) -> S {
-        acceleration.scaled(&self.inertia)
-            + velocity.scaled(&self.damping)
-            + self.axis.share(angle).polynomial(&self.gravity).0
+        let [gravity] = self.axis.share(angle).polynomials([&self.gravity]);
+        acceleration.scaled(&self.inertia) + velocity.scaled(&self.damping) + gravity
     }
 }

@@ -5,6 +5,7 @@
 //! recruited, w, the frequency of each type and the weight c of F_pe2 held. The tendon is in
 //! series: dF_se/dL_mt = k_f k_t/(k_f + k_t), with k_f = dF/dL and the tendon's stiffness k_t.
 
+use crate::equations::{activation_frequency, force_length};
 use crate::muscle::Muscle;
 use crate::recruitment::{
     IntramuscularFes, LumpedState, NaturalContinuous, Recruitment, RecruitmentTick,
@@ -75,19 +76,21 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
     fn pull_at(&self, state: &State<S, R, N>, now: S, length: S) -> S {
         let (length, _) = self.domain.filaments.clip(length);
         let [here, there] = [now, length].map(|at| self.optimal_length.distance(at));
-        let [reciprocal, moved] = [now, length].map(S::reciprocal);
-        let lengths = self.fibers.each_ref().map(|fiber| fiber.force_length.at(&here));
+        let fibers = self.fibers.each_ref();
+        let [lengths, lengths_there] =
+            [&here, &there].map(|at| force_length::at(fibers.map(|f| &f.force_length), at));
+        let [curves, curves_there] = [now, length]
+            .map(|at| activation_frequency::curves(fibers.map(|f| &f.activation), at.reciprocal()));
         let least = half_to_the(LEAST_GAIN);
         // What is recruited times Af.
         let shares = core::array::from_fn(|i| state.gains[i].ratio(lengths[i].max(least)));
         let activities = R::activities(&self.recruitment, &state.recruitment, &shares);
         let mut active = S::ZERO;
-        for (i, fiber) in self.fibers.iter().enumerate() {
+        for i in 0..N {
             if activities[i] > least {
-                let curve = fiber.activation.at(reciprocal);
-                let moved = curve.moved(activities[i], &fiber.activation.at(moved));
+                let moved = curves[i].moved(activities[i], &curves_there[i]);
                 let weight = shares[i].ratio(activities[i]);
-                active = active + weight * moved * fiber.force_length.at(&there);
+                active = active + weight * moved * lengths_there[i];
             }
         }
         let passive = self.parallel.at(length).0 + state.compressed * self.compression.at(length).0;

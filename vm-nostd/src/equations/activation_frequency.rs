@@ -115,6 +115,6 @@ impl<S: Scalar> ActivationCurve<S> {
         let left = (S::ONE - value).max(S::LEAST);
         let x = (-left.ln()).max(S::LEAST).ln();
         let ratio = to.exponent.ratio(self.exponent);
-        (x * ratio - to.exponent * ratio.ln()).weibull().0
+        (x * ratio - to.exponent * ratio.ln()).weibull()
     }
 }
