@@ -19,6 +19,9 @@ const FILTER_TIME: f64 = 0.025;
 /// Filter time of derivatives, s.
 const DERIVATIVE_FILTER: f64 = 0.02;
 
+/// Less co-contraction than this, of the weight's torque, is none.
+const NO_COCONTRACTION: f64 = 0.03;
+
 /// Which controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -65,7 +68,7 @@ impl Kind {
         const PI: [(f64, f64); 2] = [(0.01, 10.0), (0.01, 10.0)];
         const PID: [(f64, f64); 3] = [(0.05, 5.0), (0.05, 5.0), (0.01, 1.0)];
         const MODEL: [(f64, f64); 6] =
-            [(0.3, 20.0), (0.2, 20.0), (0.05, 2.0), (0.05, 0.2), (0.5, 20.0), (0.02, 0.5)];
+            [(0.3, 20.0), (0.2, 20.0), (0.05, 2.0), (0.05, 0.2), (0.5, 20.0), (0.001, 0.4)];
         match self {
             Self::Pi | Self::PiCurve => &PI,
             Self::PidCurve => &PID,
@@ -174,14 +177,19 @@ impl<S: Scalar> Modelled<S> {
                 electrodes: [ELECTRODE; 2],
                 modulation: [Modulation::Width { amplitude: AMPLITUDE }; 2],
                 stimulation_frequency: FREQUENCY,
-                cocontraction: cocontraction * weight,
+                // Even a little of it stimulates at the threshold, of which the controller is not sure.
+                cocontraction: if cocontraction < NO_COCONTRACTION {
+                    0.0
+                } else {
+                    cocontraction * weight
+                },
                 measured: Measured::Angle,
                 feedback: PiParams {
                     proportional: proportional * weight,
                     integral: integral * weight,
                     derivative: derivative * weight,
                     derivative_filter: DERIVATIVE_FILTER,
-                    most: 2.0 * weight,
+                    most: 8.0 * weight,
                 },
                 expected_lag,
                 lead_filter_time: FILTER_TIME,
@@ -193,7 +201,7 @@ impl<S: Scalar> Modelled<S> {
                     most: 2.0,
                     excitation: (0.1 * weight).max(0.01),
                 }),
-                torque: (-4.0 * weight, 4.0 * weight),
+                torque: (-10.0 * weight, 10.0 * weight),
             },
             TimeStep::MILLISECOND,
         )?;

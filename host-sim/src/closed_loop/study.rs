@@ -187,20 +187,24 @@ mod tests {
     fn the_table_has_the_named_columns() {
         let rows = run(&small(1)).expect("a comparison");
         let json = serde_json::to_value(&rows[0]).expect("JSON");
-        let mut columns: Vec<&str> = json.as_object().expect("a row").keys().map(|k| &k[..]).collect();
+        let mut columns: Vec<&str> =
+            json.as_object().expect("a row").keys().map(|k| &k[..]).collect();
         columns.sort_unstable();
-        assert_eq!(columns, [
-            "arithmetic",
-            "charge_median_uc",
-            "controller",
-            "limit_broken",
-            "overshoot_p95",
-            "patients",
-            "rms_median",
-            "rms_p95",
-            "task",
-            "unstable",
-        ]);
+        assert_eq!(
+            columns,
+            [
+                "arithmetic",
+                "charge_median_uc",
+                "controller",
+                "limit_broken",
+                "overshoot_p95",
+                "patients",
+                "rms_median",
+                "rms_p95",
+                "task",
+                "unstable",
+            ]
+        );
     }
 
     #[test]

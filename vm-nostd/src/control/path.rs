@@ -294,8 +294,8 @@ pub(super) struct Path<S: Scalar, const J: usize> {
     change: [[S; POWERS]; J],
     /// -d change/dx, decimetres.
     arm: [[S; ORDER]; J],
-    /// Its derivative by x.
-    arm_slope: [[S; ORDER]; J],
+    /// d arm/dx, decimetres.
+    slope: [[S; ORDER]; J],
     /// Coefficient of x_1 x_2, decimetres.
     product: S,
     /// Decimetres to path lengths.
@@ -306,7 +306,7 @@ pub(super) struct Path<S: Scalar, const J: usize> {
     per_angle_squared: [S::Factor; J],
 }
 
-summed!([S: Scalar, const J: usize] Path<S, J> { middle, change, arm, arm_slope, product, unit, per_angle, per_angle_squared });
+summed!([S: Scalar, const J: usize] Path<S, J> { middle, change, arm, slope, product, unit, per_angle, per_angle_squared });
 
 /// A muscle in a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -347,10 +347,10 @@ impl<S: Scalar, const J: usize> Path<S, J> {
             arm: change.map(|powers: [f64; POWERS]| {
                 core::array::from_fn(|k| S::from_f64(-powers[k + 1] * (k + 1) as f64))
             }),
-            arm_slope: change.map(|powers: [f64; POWERS]| {
+            slope: change.map(|powers: [f64; POWERS]| {
                 core::array::from_fn(|k| {
-                    let power = powers.get(k + 2).copied().unwrap_or(0.0);
-                    S::from_f64(-power * ((k + 1) * (k + 2)) as f64)
+                    let above = powers.get(k + 2).copied().unwrap_or(0.0);
+                    S::from_f64(-above * ((k + 1) * (k + 2)) as f64)
                 })
             }),
             change: change.map(|powers| powers.map(S::from_f64)),
@@ -371,9 +371,9 @@ impl<S: Scalar, const J: usize> Path<S, J> {
         let mut moment_arms = [S::ZERO; J];
         let mut arm_slopes = [S::ZERO; J];
         for (j, &x) in shares.iter().enumerate() {
-            let [change_of_joint] = x.polynomials([&self.change[j]]);
-            change = change + change_of_joint;
-            let [arm, slope] = x.polynomials([&self.arm[j], &self.arm_slope[j]]);
+            let [longer] = x.polynomials([&self.change[j]]);
+            change = change + longer;
+            let [arm, slope] = x.polynomials([&self.arm[j], &self.slope[j]]);
             let other = if J == 2 { self.product * shares[1 - j] } else { S::ZERO };
             moment_arms[j] = (arm - other).scaled(&self.per_angle[j]);
             arm_slopes[j] = slope.scaled(&self.per_angle_squared[j]);

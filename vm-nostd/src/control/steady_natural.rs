@@ -4,8 +4,9 @@
 //! F_se = max(0, Σ U W_i Af_i FL_i + F_pe1 + Σ U W_i Af_i F_pe2).
 //! The wanted force gives the tendon's length and with it the fascicles'; U follows by bisection.
 
+use crate::equations::activation_frequency::curves;
+use crate::equations::force_length;
 use crate::equations::tendon::TendonInverse;
-use crate::equations::{activation_frequency, force_length};
 use crate::error::ParameterError;
 use crate::io::Input;
 use crate::muscle::ContinuousMuscle;
@@ -67,17 +68,16 @@ impl<S: Scalar, const N: usize> SteadyNatural<S, N> {
         let (inside, _) = m.domain.filaments.clip(length);
         let distance = m.optimal_length.distance(inside);
         let reciprocal = inside.reciprocal();
-        let fibers = m.fibers.each_ref();
-        let curves = activation_frequency::curves(fibers.map(|f| &f.activation), reciprocal);
-        let overlaps = force_length::at(fibers.map(|f| &f.force_length), &distance);
+        let types = m.fibers.each_ref();
+        let overlaps = force_length::at(types.map(|t| &t.force_length), &distance);
+        let curves = curves(types.map(|t| &t.activation), reciprocal);
         let parallel = m.parallel.at(length).0;
         let compression = m.compression.at(length).0;
         let pull = |activation: S| {
             let mut sum = parallel;
             let held = m.recruitment.held(activation);
-            let curves = curves.iter().zip(&overlaps);
-            for (((weight, frequency), (curve, overlap)), fiber) in
-                held.into_iter().zip(curves).zip(&m.fibers)
+            for ((((weight, frequency), curve), overlap), fiber) in
+                held.into_iter().zip(&curves).zip(&overlaps).zip(&m.fibers)
             {
                 let sag = m.recruitment.held_sag(fiber, frequency);
                 sum = sum + weight * curve.at(frequency * sag) * (*overlap + compression);

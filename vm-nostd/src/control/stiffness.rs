@@ -5,7 +5,8 @@
 //! recruited, w, the frequency of each type and the weight c of F_pe2 held. The tendon is in
 //! series: dF_se/dL_mt = k_f k_t/(k_f + k_t), with k_f = dF/dL and the tendon's stiffness k_t.
 
-use crate::equations::{activation_frequency, force_length};
+use crate::equations::activation_frequency::curves;
+use crate::equations::force_length;
 use crate::muscle::Muscle;
 use crate::recruitment::{
     IntramuscularFes, LumpedState, NaturalContinuous, Recruitment, RecruitmentTick,
@@ -76,11 +77,12 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
     fn pull_at(&self, state: &State<S, R, N>, now: S, length: S) -> S {
         let (length, _) = self.domain.filaments.clip(length);
         let [here, there] = [now, length].map(|at| self.optimal_length.distance(at));
-        let fibers = self.fibers.each_ref();
-        let [lengths, lengths_there] =
-            [&here, &there].map(|at| force_length::at(fibers.map(|f| &f.force_length), at));
-        let [curves, curves_there] = [now, length]
-            .map(|at| activation_frequency::curves(fibers.map(|f| &f.activation), at.reciprocal()));
+        let [reciprocal, moved] = [now, length].map(S::reciprocal);
+        let types = self.fibers.each_ref();
+        let [lengths, longer] =
+            [here, there].map(|at| force_length::at(types.map(|t| &t.force_length), &at));
+        let [curves, others] =
+            [reciprocal, moved].map(|at| curves(types.map(|t| &t.activation), at));
         let least = half_to_the(LEAST_GAIN);
         // What is recruited times Af.
         let shares = core::array::from_fn(|i| state.gains[i].ratio(lengths[i].max(least)));
@@ -88,9 +90,9 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
         let mut active = S::ZERO;
         for i in 0..N {
             if activities[i] > least {
-                let moved = curves[i].moved(activities[i], &curves_there[i]);
+                let moved = curves[i].moved(activities[i], &others[i]);
                 let weight = shares[i].ratio(activities[i]);
-                active = active + weight * moved * lengths_there[i];
+                active = active + weight * moved * longer[i];
             }
         }
         let passive = self.parallel.at(length).0 + state.compressed * self.compression.at(length).0;
