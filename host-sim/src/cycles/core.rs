@@ -26,7 +26,8 @@ pub enum Core {
     #[serde(rename = "cortex-m4f")]
     #[value(name = "cortex-m4f")]
     CortexM4F,
-    /// Cortex-M3: no floating-point unit; long multiplication in 3 to 5 cycles.
+    /// Cortex-M3: no floating-point unit; long multiplication in 3 to 5 cycles, 4 to 7 with
+    /// accumulation.
     CortexM3,
     /// Cortex-M0+ with the single-cycle multiplier: no long multiplication, no division.
     #[serde(rename = "cortex-m0plus")]
