@@ -89,7 +89,8 @@ impl Default for Command {
 
 #[derive(Debug, Args)]
 struct GoldenArgs {
-    /// Replace the golden bits by those of this build.
+    /// Replace the golden bits by those of this build, in host-sim/data of the checkout that this
+    /// program was built in.
     #[arg(long, requires = "reason")]
     bless: bool,
     /// Reason for the change.
@@ -100,8 +101,8 @@ struct GoldenArgs {
 #[derive(Debug, Args)]
 struct FiguresArgs {
     /// Output folder; created if missing.
-    #[arg(long, default_value = "figures")]
-    out: PathBuf,
+    #[arg(long, visible_alias = "out", default_value = "figures")]
+    output: PathBuf,
     /// Arithmetic.
     #[arg(long, value_enum, default_value_t = Arithmetic::F32)]
     arithmetic: Arithmetic,
@@ -110,8 +111,8 @@ struct FiguresArgs {
 #[derive(Debug, Args)]
 struct ReportArgs {
     /// Output page, in HTML.
-    #[arg(long, default_value = "report.html")]
-    out: PathBuf,
+    #[arg(long, visible_alias = "out", default_value = "report.html")]
+    output: PathBuf,
     /// Output of `vm cycles --json`, if cycles were measured.
     #[arg(long, value_name = "FILE")]
     cycles: Option<PathBuf>,
@@ -119,7 +120,7 @@ struct ReportArgs {
 
 #[derive(Debug, Args)]
 struct ReadmeArgs {
-    /// Write the tables and the picture.
+    /// Write the tables and the picture, in the checkout that this program was built in.
     #[arg(long)]
     write: bool,
 }
@@ -194,12 +195,17 @@ fn print(text: &dyn std::fmt::Display) -> std::io::Result<()> {
     unless_broken(writeln!(std::io::stdout(), "{text}"))
 }
 
+/// A file format: its name, and the endings of its files, the usual one first.
+type Format = (&'static str, &'static [&'static str]);
+
+const CSV: Format = ("CSV", &["csv", "txt"]);
+const HTML: Format = ("HTML", &["html", "htm"]);
+
 /// Refuses a file name with the ending of another format; a name without an ending is accepted.
 fn check_ending(
     option: &str,
     path: &Path,
-    format: &str,
-    endings: &[&str],
+    (format, endings): Format,
 ) -> Result<(), Box<dyn Error>> {
     let Some(ending) = path.extension() else { return Ok(()) };
     if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
@@ -226,7 +232,7 @@ fn compare_bits(args: &GoldenArgs) -> Result<bool, Box<dyn Error>> {
 }
 
 fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
-    let claims = figures::make(&args.out, args.arithmetic)?;
+    let claims = figures::make(&args.output, args.arithmetic)?;
     let header = ["figure", "claim", "claimed", "held to", "measured", "agrees", "why not"];
     let mut table = markdown_table(&header, []);
     for claim in &claims {
@@ -240,16 +246,16 @@ fn make_figures(args: &FiguresArgs) -> Result<(), Box<dyn Error>> {
 
 fn write_report(args: &ReportArgs) -> Result<(), Box<dyn Error>> {
     // Check the paths before the measurements, which take minutes.
-    check_ending("--out", &args.out, "HTML", &["html", "htm"])?;
-    trace::check_folder(&args.out)?;
+    check_ending("--output", &args.output, HTML)?;
+    trace::check_folder(&args.output)?;
     if let Some(cycles) = &args.cycles
-        && trace::same_file(&args.out, cycles)
+        && trace::same_file(&args.output, cycles)
     {
-        let out = args.out.display();
-        return Err(format!("--out {out}: must be another file than --cycles's").into());
+        let output = args.output.display();
+        return Err(format!("--output {output}: must be another file than --cycles's").into());
     }
     let page = report::page(args.cycles.as_deref())?;
-    trace::write_atomically(&args.out, page.as_bytes())?;
+    trace::write_atomically(&args.output, page.as_bytes())?;
     Ok(())
 }
 

@@ -25,7 +25,7 @@ pub enum LedgerError {
     #[error("{}: another run is writing it", .0.display())]
     Busy(PathBuf),
     /// The header is that of another run, or the file is no table.
-    #[error("{}: begins with \"{found}\", expected \"{expected}\": not a table of this run", path.display())]
+    #[error("{}: begins with \"{found}\", expected \"{expected}\": not a table of this run; give --output another file, or remove {}", path.display(), path.display())]
     Other {
         /// The file.
         path: PathBuf,

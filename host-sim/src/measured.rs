@@ -194,14 +194,21 @@ fn find(folder: &Path, skipped: &mut Vec<(String, String)>) -> Result<Vec<Found>
         .into_iter()
         .flatten()
         .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.join(TRIALS_FILE).is_file())
+        // Not a set: a temporary folder of another program.
+        .filter(|path| !path.file_name().is_some_and(|n| n.as_encoded_bytes().starts_with(b".")))
+        .filter(|path| [MUSCLE_FILE, TRIALS_FILE].iter().any(|file| path.join(file).is_file()))
         .filter(|path| !found.iter().any(|set: &Found| set.folder == *path))
         .collect();
     others.sort();
     for folder in others {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let missing = [MUSCLE_FILE, TRIALS_FILE].into_iter().find(|f| !folder.join(f).is_file());
+        if let Some(missing) = missing {
+            skipped.push((name, format!("no {missing} in {}", folder.display())));
+            continue;
+        }
         let start = Start::read(&folder.join(MUSCLE_FILE))?;
         let trials = Trials::read(&folder.join(TRIALS_FILE), &folder, &start.named)?;
-        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         found.push(Found { name, folder, start, trials, published: None, stretched: &[] });
     }
     Ok(found)

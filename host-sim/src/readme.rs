@@ -11,14 +11,16 @@ mod tables;
 pub use picture::picture;
 pub use place::{
     CYCLES, ERROR_BUDGET, FIT, MEASURED, PICTURE, Place, RECOVERY, ReadmeError, SCOREBOARD, STACK,
+    WORST,
 };
-pub use tables::{cycles, error_budget, measured, memory, stack};
+pub use tables::{cycles, error_budget, measured, memory, stack, worst};
 
 use crate::verify::Report;
 
 /// The tables generated from an accuracy report, with their places.
-pub fn tables(report: &Report) -> Result<[(Place, String); 3], ReadmeError> {
+pub fn tables(report: &Report) -> Result<[(Place, String); 4], ReadmeError> {
     Ok([
+        (WORST, worst(report)),
         (MEASURED, measured(report)),
         (ERROR_BUDGET, error_budget(report)),
         (FIT, fit::table(report, &CYCLES.text()?)?),

@@ -14,7 +14,7 @@ mod summary;
 pub use bout::{Bout, Setting};
 pub use list::{Free, free, list};
 pub use patient::{Patient, PatientError};
-pub use protocol::{WriteError, bouts, stimulated, write};
+pub use protocol::{LIST, WriteError, bouts, stimulated, write};
 pub use study::Study;
 pub use summary::{Recovered, Summary, summaries, text};
 

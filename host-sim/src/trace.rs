@@ -1,5 +1,6 @@
 //! Input and output traces in CSV.
 
+use crate::model_muscle::in_file_unit;
 use crate::output_file::{self, STANDARD, folder_of};
 use crate::reference::{Input, Sample};
 use std::io::Read;
@@ -143,8 +144,8 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     } else {
         time_step
     };
-    vm_nostd::TimeStep::from_seconds(time_step)
-        .map_err(|error| wrong(1, "t_s", error.to_string()))?;
+    check_time_step(time_step, 1.0)
+        .map_err(|limit| wrong(1, "t_s", format!("rows {time_step} s apart: {limit} s apart")))?;
     let inputs = rows
         .iter()
         .map(|(_, row)| Input {
@@ -154,6 +155,20 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
         })
         .collect();
     Ok(InputTrace { start: first[0], time_step, inputs })
+}
+
+/// Refuses a time step (s) that no muscle takes; the limits are in a unit of which `per_second` make
+/// a second.
+pub fn check_time_step(seconds: f64, per_second: f64) -> Result<(), String> {
+    use vm_nostd::TimeStep;
+    match TimeStep::from_seconds(seconds) {
+        Ok(_) => Ok(()),
+        Err(_) => {
+            let limits = [TimeStep::SHORTEST, TimeStep::LONGEST];
+            let [least, most] = limits.map(|limit| in_file_unit(limit, per_second));
+            Err(format!("must be {least} to {most}"))
+        }
+    }
 }
 
 /// Median of the time steps, s.

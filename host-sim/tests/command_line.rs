@@ -202,10 +202,13 @@ fn an_invalid_input_file_is_refused_with_line_and_column() {
             &rows("0,0,0.16,0\n0.001,0,0.16,0\n0.003,0,0.16,0\n0.004,0,0.16,0\n"),
             &["line 4", "t_s", "0.002"],
         ),
-        (&rows("0,0,0.16,0\n0.01,0,0.16,0\n"), &["t_s", "0.01", "between 0.0001 and 0.002"]),
+        (
+            &rows("0,0,0.16,0\n0.01,0,0.16,0\n"),
+            &["t_s: rows 0.01 s apart: must be 0.0001 to 0.002 s"],
+        ),
         (
             &rows("0,0,0.5,0\n0.001,0,0.16,0\n"),
-            &["line 2", "path_length_m", "0.5", "0.1975", "n_f"],
+            &["line 2", "path_length_m", "0.5", "to 0.1975", "the longest on which it can rest"],
         ),
     ];
     for (input, words) in cases {

@@ -17,7 +17,7 @@ fn figures_numbers_and_claims_are_written() {
     // A folder that does not exist yet.
     let out = folder.path().join("figures");
     let output = Command::new(env!("CARGO_BIN_EXE_vm"))
-        .args(["figures", "--out"])
+        .args(["figures", "--output"])
         .arg(&out)
         .output()
         .expect("vm runs");

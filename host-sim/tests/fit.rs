@@ -36,6 +36,13 @@ fn noise(index: usize) -> f64 {
 /// The recording of the example: force of the reference for a stronger muscle on another path,
 /// every 7 ms, with noise of 1 % of F0.
 fn recording() -> String {
+    // To the end of the window.
+    recording_with(0.01, 7) + "1.2,0.5,0\n"
+}
+
+/// The same with another noise, a share of F0, and a reading every so many ms. With one every ms the
+/// model has the path of the recording; between others it is interpolated.
+fn recording_with(share: f64, every: usize) -> String {
     let mut muscle = muscle_file::parse(MUSCLE, Path::new("m.toml")).expect("a muscle").muscle;
     muscle.mass *= FORCE / muscle.f0();
     let change = |time: f64| 0.004 * (12.0 * time).sin();
@@ -52,13 +59,12 @@ fn recording() -> String {
     let trace = InputTrace { start: -0.1, time_step: 1e-3, inputs };
     let rows = engine::run(&muscle, Mode::Fes, Arithmetic::Reference, &trace).expect("a run");
     let mut text = "t_s,force_n,change_mm\n".to_owned();
-    for tick in (0..=1200).step_by(7) {
-        let force = rows[100 + tick].0.force + 0.01 * FORCE * noise(tick);
+    for tick in (0..=1200).step_by(every) {
+        let force = rows[100 + tick].0.force + share * FORCE * noise(tick);
         let time = tick as f64 * 1e-3;
         text += &format!("{time},{force:.4},{}\n", 1e3 * change(time));
     }
-    // To the end of the window.
-    text + "1.2,0.5,0\n"
+    text
 }
 
 /// A folder with a muscle file, a list of trials and a recording.
@@ -214,6 +220,12 @@ fn an_invalid_list_of_trials_is_refused_with_its_key() {
             &["no published spread", "f05_pps"],
         ),
         ("tetanus.csv", "nowhere.csv", &["nowhere.csv"]),
+        ("[0.1, 1]", "[0.1, 3]", &["trial \"tetanus\": activation = 3: must be 0 to 1"]),
+        (
+            "time_step_ms = 1 ",
+            "time_step_ms = 7 ",
+            &["trials.toml: time_step_ms = 7: must be 0.1 to 2"],
+        ),
     ];
     let recording = recording();
     for (from, to, words) in cases {
@@ -222,11 +234,54 @@ fn an_invalid_list_of_trials_is_refused_with_its_key() {
 }
 
 #[test]
+fn inputs_that_no_muscle_takes_are_refused_with_their_place() {
+    let pps = |signal: &str| {
+        let line = example().lines().find(|line| line.starts_with("stimulation_pps")).expect("it");
+        changed(line, &format!("stimulation_pps = {signal}"))
+    };
+    let constant = pps("{ constant = 4000 }");
+    Bench::new(&constant, &recording())
+        .refused(&["trials.toml", "trial \"tetanus\": stimulation_pps = 4000: must be 0 to 500"]);
+    let column = pps("{ file = \"tetanus.csv\", time = \"t_s\", value = \"force_n\", scale = -1 }");
+    let negative =
+        ["tetanus.csv, line ", "column force_n: stimulation_pps = -", "must be 0 to 500"];
+    Bench::new(&column, &recording()).refused(&negative);
+}
+
+/// Forces without noise: the residuals do not narrow the intervals below the stated noise, or they
+/// would exclude the truth.
+#[test]
+fn a_noiseless_recording_has_the_intervals_of_the_stated_noise() {
+    let noiseless = recording_with(0.0, 1);
+    let bench = Bench::new(example(), &noiseless);
+    let done = bench.fit("fitted.toml", &["--starts", "1"]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(said.contains("residuals far below noise_pct_f0"), "{said}");
+    let file = text(&bench.path("fitted.toml"));
+    let half = Bench::new(&changed("noise_pct_f0 = 1 ", "noise_pct_f0 = 0.5 "), &noiseless);
+    assert!(half.fit("fitted.toml", &["--starts", "1"]).status.success());
+    let halved = text(&half.path("fitted.toml"));
+    for (name, truth) in [("max_isometric_force_n", FORCE), ("path_at_rest_m", PATH)] {
+        let (_, least, most) = fitted(&file, name);
+        assert!((least..=most).contains(&truth), "{name}: {least} to {most}");
+        let (_, from, to) = fitted(&halved, name);
+        // Printed with six digits.
+        assert!(((most - least) / (to - from) - 2.0).abs() < 0.01, "{name}: {from} to {to}");
+    }
+    let noisy = Bench::new(example(), &recording());
+    let done = noisy.fit("fitted.toml", &["--starts", "1"]);
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(done.status.success() && !said.contains("far below"), "{said}");
+}
+
+#[test]
 fn an_undetermined_parameter_is_refused_by_name() {
     // FES recruits all types in proportion.
     let free = "[[free]]\nname = \"recruitment_saturation\"\nPRIOR\n[[free]]";
     let without = changed("[[free]]", &free.replace("PRIOR", ""));
-    Bench::new(&without, &recording()).refused(&["not determined", "recruitment_saturation"]);
+    Bench::new(&without, &recording())
+        .refused(&["trials.toml: not determined", "recruitment_saturation"]);
 
     let prior = free.replace("PRIOR", "prior = { mean = 0.8, spread = 0.05 }");
     let bench = Bench::new(&changed("[[free]]", &prior), &recording());

@@ -54,7 +54,7 @@ fn fitted(muscle: &str, trials: &str, column: &str, recorded: &[f64]) -> String 
     }
     let done = Command::new(env!("CARGO_BIN_EXE_vm"))
         .current_dir(folder.path())
-        .args(["fit", "--muscle", "m.toml", "--trials", "trials.toml", "--out", "fitted.toml"])
+        .args(["fit", "--muscle", "m.toml", "--trials", "trials.toml", "--output", "fitted.toml"])
         .args(["--starts", "1"])
         .output()
         .expect("vm runs");

@@ -29,7 +29,7 @@ fn vm(arguments: &[&str], folder: &Path) -> Output {
 fn a_protocol_can_be_run_and_takes_less_than_three_minutes() {
     let folder = tempfile::tempdir().expect("a folder");
     for (mode, name) in [(Mode::Fes, "fes"), (Mode::Continuous, "continuous")] {
-        let done = vm(&["protocol", "--mode", name, "--out", name], folder.path());
+        let done = vm(&["protocol", "--mode", name, "--output", name], folder.path());
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
         let (start, bouts) = (start(), recover::bouts(mode, true));
         let driven = recover::stimulated(&bouts);
@@ -48,7 +48,7 @@ fn a_protocol_can_be_run_and_takes_less_than_three_minutes() {
         // The list lacks only the recordings.
         fs::write(folder.path().join("m.toml"), recover::MUSCLE).expect("a file");
         let trials = format!("{name}/trials.toml");
-        let fit = ["fit", "--muscle", "m.toml", "--trials", &trials, "--out", "fitted.toml"];
+        let fit = ["fit", "--muscle", "m.toml", "--trials", &trials, "--output", "fitted.toml"];
         let refused = vm(&fit, folder.path());
         assert_eq!(refused.status.code(), Some(2));
         let message = String::from_utf8_lossy(&refused.stderr).into_owned();

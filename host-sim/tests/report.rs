@@ -16,7 +16,7 @@ const CYCLES: &str = r#"[{
 
 fn report(out: &Path, cycles: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vm"))
-        .args(["report", "--out"])
+        .args(["report", "--output"])
         .arg(out)
         .arg("--cycles")
         .arg(cycles)

@@ -162,7 +162,7 @@ fn pictures_other_than_svg_and_pages_other_than_html_are_refused() {
     for (arguments, words) in [
         ("plot --run run.csv --output run.png", ["--output run.png", "SVG", ".svg"]),
         ("plot --run run.csv --output run.PDF", ["--output run.PDF", "SVG", ".svg"]),
-        ("report --out report.pdf", ["--out report.pdf", "HTML", ".html"]),
+        ("report --out report.pdf", ["--output report.pdf", "HTML", ".html"]),
     ] {
         let output = vm(folder.path(), arguments).output().expect("vm runs");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

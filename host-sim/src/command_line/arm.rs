@@ -1,11 +1,11 @@
 //! `vm arm`.
 
-use super::{ModeName, print};
+use super::{CSV, ModeName, check_ending, print};
 use crate::arm::{self, Activations, Arm, Drive, Joints, Moment, Outcome, Swings};
 use crate::engine::{Arithmetic, status_names};
 use crate::figures;
 use crate::markdown_table::markdown_table;
-use crate::trace::{check_folder, write_atomically};
+use crate::trace::{check_folder, check_time_step, write_atomically};
 use clap::Args;
 use std::error::Error;
 use std::path::PathBuf;
@@ -42,12 +42,14 @@ pub struct ArmArgs {
     #[arg(long, default_value_t = 1.0)]
     tick: f64,
     /// Output of every tick, in CSV.
-    #[arg(long)]
+    #[arg(long, visible_alias = "out")]
     output: Option<PathBuf>,
 }
 
 /// Runs the arm and prints the outcome.
 pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
+    check_time_step(args.tick * 1e-3, 1e3)
+        .map_err(|limit| format!("--tick {}: {limit} ms", args.tick))?;
     let arm = Arm::built_in();
     let drive = Drive {
         mode: args.mode.into(),
@@ -63,6 +65,7 @@ pub fn run(args: &ArmArgs) -> Result<(), Box<dyn Error>> {
         duration: args.duration,
     };
     if let Some(path) = &args.output {
+        check_ending("--output", path, CSV)?;
         check_folder(path)?;
     }
     let moments = arm::run(&arm, &drive)?;

@@ -24,7 +24,8 @@ pub struct CyclesArgs {
     /// docs/cycles.md or data/computation.csv have drifted.
     #[arg(long, conflicts_with_all = ["case", "elf"])]
     check: bool,
-    /// Write the tables of docs/cycles.md, and data/computation.csv for figure 7.
+    /// Write the tables of docs/cycles.md, and data/computation.csv for figure 7, in host-sim of
+    /// the checkout that this program was built in.
     #[arg(long, conflicts_with_all = ["case", "elf", "check"])]
     write: bool,
     /// Share of the core's time that muscles may take, 0.01 to 1.

@@ -1,7 +1,7 @@
 //! `vm fit`: a muscle fitted to recordings.
 
 use super::print;
-use crate::fit::{CONFIRMED, Fit, Search, Start, Trials, fit, fitted_file, page};
+use crate::fit::{CONFIRMED, Fit, FitError, Search, Start, Trials, fit, fitted_file, page};
 use crate::markdown_table::markdown_table;
 use crate::trace;
 use clap::Args;
@@ -21,8 +21,8 @@ pub struct FitArgs {
     #[arg(long)]
     data: Option<PathBuf>,
     /// Fitted muscle, in TOML.
-    #[arg(long, default_value = "fitted.toml")]
-    out: PathBuf,
+    #[arg(long, visible_alias = "out", default_value = "fitted.toml")]
+    output: PathBuf,
     /// Report of every trial and parameter, in HTML.
     #[arg(long)]
     report: Option<PathBuf>,
@@ -50,7 +50,7 @@ impl SearchArgs {
 
 pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
     // Check the paths before the fit, which takes minutes.
-    for (option, output) in [("--out", Some(&args.out)), ("--report", args.report.as_ref())] {
+    for (option, output) in [("--output", Some(&args.output)), ("--report", args.report.as_ref())] {
         let Some(output) = output else { continue };
         trace::check_folder(output)?;
         for (read, file) in [("--muscle", &args.muscle), ("--trials", &args.trials)] {
@@ -60,18 +60,29 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
             }
         }
     }
+    super::check_ending("--output", &args.output, ("TOML", &["toml"]))?;
     if let Some(report) = &args.report {
-        super::check_ending("--report", report, "HTML", &["html", "htm"])?;
+        super::check_ending("--report", report, super::HTML)?;
     }
-    if args.report.as_ref() == Some(&args.out) {
-        return Err("--report: must be another file than --out's".into());
+    if args.report.as_ref() == Some(&args.output) {
+        return Err("--report: must be another file than --output's".into());
     }
     let start = Start::read(&args.muscle)?;
     let own = args.trials.parent().unwrap_or(Path::new("."));
     let folder = args.data.as_deref().unwrap_or(own);
     let trials = Trials::read(&args.trials, folder, &start.named)?;
     let search = args.search.search();
-    let fit = fit(&start.named, start.keep_force, trials, &search, &CONFIRMED)?;
+    let stated = trials.stated;
+    let fit =
+        fit(&start.named, start.keep_force, trials, &search, &CONFIRMED).map_err(|error| {
+            // The others name their file.
+            match error {
+                FitError::Undetermined(_) | FitError::Start { .. } | FitError::NoSolution(..) => {
+                    format!("{}: {error}", args.trials.display())
+                }
+                _ => error.to_string(),
+            }
+        })?;
     let origin = format!(
         "Fitted by vm fit to {}, from {}, {} starts, seed {}.",
         file_name(&args.trials),
@@ -81,7 +92,7 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
     );
     let text = fitted_file(&start.table, &fit, &origin);
     let report = args.report.as_ref().map(|_| page(&fit, &origin)).transpose()?;
-    trace::write_atomically(&args.out, text.as_bytes())?;
+    trace::write_atomically(&args.output, text.as_bytes())?;
     if let (Some(path), Some(page)) = (&args.report, report) {
         trace::write_atomically(path, page.as_bytes())?;
     }
@@ -96,6 +107,11 @@ pub fn run(args: &FitArgs) -> Result<(), Box<dyn Error>> {
         "residuals {:.2} times the stated noise; {near} of {starts} starts ended at the best",
         fit.noise_ratio
     ))?;
+    if fit.is_below_noise() {
+        print(&format!(
+            "residuals far below {stated}: the intervals are those of the stated noise"
+        ))?;
+    }
     for confirmed in &fit.confirmed {
         let (max, rms) = confirmed.difference;
         let name = confirmed.arithmetic.name();

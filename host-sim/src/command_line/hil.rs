@@ -25,7 +25,7 @@ pub struct HilArgs {
     #[arg(long)]
     input: PathBuf,
     /// Outputs of the device, in CSV; `-` is standard output.
-    #[arg(long, default_value = "hil.csv")]
+    #[arg(long, visible_alias = "out", default_value = "hil.csv")]
     output: PathBuf,
     /// Recruitment mode.
     #[arg(long, value_enum, default_value = "continuous")]

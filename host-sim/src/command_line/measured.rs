@@ -22,7 +22,7 @@ pub struct MeasuredArgs {
     /// Skip the models without yield and without length dependence of Af and FV.
     #[arg(long)]
     no_ablation: bool,
-    /// Write the tables to docs/fitting.md.
+    /// Write the tables to host-sim/docs/fitting.md of the checkout that this program was built in.
     #[arg(long)]
     write: bool,
     /// Skip missing sets without an error.
@@ -38,6 +38,9 @@ pub struct MeasuredArgs {
 
 /// True if no set was missing, or missing sets are allowed.
 pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
+    if !args.data.is_dir() {
+        return Err(format!("--data {}: no such folder", args.data.display()).into());
+    }
     let left_out = if args.no_ablation { &LeftOut::ALL[..1] } else { &LeftOut::ALL[..] };
     let search = SearchArgs { starts: args.starts, seed: args.seed }.search();
     let board = measured::measure(&args.data, left_out, &search)?;
@@ -49,10 +52,10 @@ pub fn run(args: &MeasuredArgs) -> Result<bool, Box<dyn Error>> {
     }
     if args.json {
         print(&serde_json::to_string_pretty(&board.rows)?)?;
-    } else {
+    } else if !board.rows.is_empty() {
         print(&text(&board, left_out))?;
     }
-    if args.write {
+    if args.write && !board.rows.is_empty() {
         readme::SCOREBOARD.write(&text(&board, left_out))?;
     }
     Ok(board.skipped.is_empty() || args.allow_missing)

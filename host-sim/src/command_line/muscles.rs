@@ -2,21 +2,25 @@
 
 use super::print;
 use crate::markdown_table::markdown_table;
+use crate::model_muscle;
 use crate::muscles::{self, ASSUMPTIONS};
 use std::error::Error;
 
-const HEADER: [&str; 11] = [
+const HEADER: [&str; 14] = [
     "muscle",
     "F0 N",
     "mass g",
     "L_ce0 cm",
     "L_se0 cm",
     "L_mt_max cm",
+    "neutral path m",
+    "shortest m",
+    "longest m",
     "slow",
     "source",
     "pennation deg",
-    "error % F0",
-    "corrected % F0",
+    "error in line, % F0",
+    "error with cosine, % F0",
 ];
 
 pub fn run() -> Result<(), Box<dyn Error>> {
@@ -24,6 +28,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     let mut table = markdown_table(&HEADER, numbers);
     for human in muscles::all() {
         let muscle = human.muscle();
+        let (shortest, longest) = model_muscle::path_domain(&muscle);
         let error = human.pennation_error();
         table.add_row([
             human.name,
@@ -32,6 +37,9 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             format!("{:.2}", muscle.L_ce0 * 1e2),
             format!("{:.2}", muscle.L_se0 * 1e2),
             format!("{:.2}", muscle.L_mt_max * 1e2),
+            format!("{:.4}", muscle.L_ce0 + muscle.L_se0),
+            format!("{shortest:.4}"),
+            format!("{longest:.4}"),
             format!("{:.2}", human.slow_fraction),
             human.slow_source,
             format!("{}", human.pennation_deg),
@@ -45,8 +53,9 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         print(&format!("- {assumption}"))?;
     }
     print(
-        &"error: largest error of steady force at full activation without pennation, for fascicles of \
-          0.7 to 1.3 L_ce0; corrected: the same with F0 cos(angle) and a shifted path.",
+        &"Paths: neutral at L_ce0 with the tendon at F0; the muscle can rest from shortest to longest. \
+          Errors: largest of steady force at full activation for fascicles of 0.7 to 1.3 L_ce0; in \
+          line: without pennation; with cosine: with F0 cos(angle) and a shifted path.",
     )?;
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `vm plot`: a run as SVG.
 
 use crate::chart::{Chart, Line, Panel, Point};
+use crate::output_file::STANDARD;
 use crate::trace::{self, InputTrace};
 use clap::Args;
 use std::error::Error;
@@ -15,12 +16,12 @@ pub struct PlotArgs {
     #[arg(long)]
     input: Option<PathBuf>,
     /// Picture, in SVG; `-` is standard output.
-    #[arg(long, default_value = "run.svg")]
+    #[arg(long, visible_alias = "out", default_value = "run.svg")]
     output: PathBuf,
 }
 
 pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
-    super::check_ending("--output", &args.output, "SVG", &["svg"])?;
+    super::check_ending("--output", &args.output, ("SVG", &["svg"]))?;
     let bytes = trace::read(&args.run)?;
     let columns = &trace::OUTPUT_COLUMNS[..4];
     let rows = trace::numbers(&bytes, &args.run, columns)?;
@@ -43,8 +44,17 @@ pub fn run(args: &PlotArgs) -> Result<(), Box<dyn Error>> {
     }
     let title = args.run.file_name().map_or(Path::new("run"), Path::new);
     let title = title.display().to_string();
+    let count = panels.len();
     let svg = Chart { title: &title, x: "time (s)", panels }.draw();
+    let replaced = args.output.is_file();
     trace::write_atomically(&args.output, svg.as_bytes())?;
+    // Nothing else is printed if the picture goes to standard output.
+    if args.output != Path::new(STANDARD) {
+        let (run, output) = (trace::name(&args.run).display(), args.output.display());
+        let how = if replaced { "replaced" } else { "written" };
+        let rows = rows.len();
+        super::print(&format!("{output} {how}: {rows} rows of {run} in {count} panels"))?;
+    }
     Ok(())
 }
 

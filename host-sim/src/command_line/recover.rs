@@ -1,7 +1,7 @@
 //! `vm protocol` and `vm recover`.
 
 use super::fit::SearchArgs;
-use super::{ModeName, print};
+use super::{CSV, ModeName, check_ending, print};
 use crate::fit::Start;
 use crate::readme;
 use crate::recover::{self, Study, Summary, summaries};
@@ -37,9 +37,10 @@ pub struct ProtocolArgs {
     /// Recruitment mode.
     #[arg(long, value_enum)]
     mode: RecordedMode,
-    /// Folder for the inputs and trials.toml; created if missing.
-    #[arg(long)]
-    out: PathBuf,
+    /// Folder for the inputs and trials.toml; created if missing. Files of the same names are
+    /// replaced.
+    #[arg(long, visible_alias = "out")]
+    output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -54,12 +55,12 @@ pub struct RecoverArgs {
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["fes", "continuous"])]
     modes: Vec<RecordedMode>,
     /// Output table, in CSV; an incomplete table of the same study is resumed.
-    #[arg(long)]
+    #[arg(long, visible_alias = "out")]
     output: PathBuf,
     /// Print the summary as JSON instead of tables.
     #[arg(long)]
     json: bool,
-    /// Write the tables to docs/fitting.md.
+    /// Write the tables to host-sim/docs/fitting.md of the checkout that this program was built in.
     #[arg(long)]
     write: bool,
     /// Number of starts per fit.
@@ -82,12 +83,24 @@ fn muscle(path: Option<&Path>) -> Result<Start, Box<dyn Error>> {
 pub fn protocol(args: &ProtocolArgs) -> Result<(), Box<dyn Error>> {
     let start = muscle(args.muscle.as_deref())?;
     let mode = args.mode.into();
-    std::fs::create_dir_all(&args.out).map_err(|e| format!("{}: {e}", args.out.display()))?;
-    recover::write(&start.named, mode, &args.out)?;
-    let bouts = recover::bouts(mode, start.named.muscle.fatigue.is_some());
+    let folder = &args.output;
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let tires = start.named.muscle.fatigue.is_some();
+    let replaced = folder.join(recover::LIST).is_file();
+    recover::write(&start.named, mode, folder)?;
+    let bouts = recover::bouts(mode, tires);
     let all: f64 = bouts.iter().map(|bout| bout.seconds).sum();
     let driven = recover::stimulated(&bouts);
-    print(&format!("{} recordings, {all:.1} s, active for {driven:.1} s", bouts.len()))?;
+    let how = if replaced { "replaced" } else { "written" };
+    print(&format!(
+        "{} recordings, {all:.1} s, active for {driven:.1} s; their inputs and {} {how} in {}",
+        bouts.len(),
+        recover::LIST,
+        folder.display(),
+    ))?;
+    if !tires {
+        print(&"left out: the recording \"fatigue\", because the muscle has no table [fatigue]")?;
+    }
     Ok(())
 }
 
@@ -100,6 +113,7 @@ struct Recovery<'a> {
 
 /// Recovers patients; true if enough forces are predicted within the limit.
 pub fn recover(args: &RecoverArgs) -> Result<bool, Box<dyn Error>> {
+    check_ending("--output", &args.output, CSV)?;
     let start = muscle(args.muscle.as_deref())?;
     let twice = |index: &usize| args.modes[..*index].contains(&args.modes[*index]);
     if (1..args.modes.len()).any(|index| twice(&index)) {
@@ -117,7 +131,10 @@ pub fn recover(args: &RecoverArgs) -> Result<bool, Box<dyn Error>> {
         print(&recover::text(&found))?;
     }
     if args.write {
-        readme::RECOVERY.write(&recover::text(&found))?;
+        let RecoverArgs { patients, seed, starts, .. } = args;
+        let made =
+            format!("`cargo vm recover --patients {patients} --seed {seed} --starts {starts}`");
+        readme::RECOVERY.write(&format!("Made by {made}.\n\n{}", recover::text(&found)))?;
     }
     Ok(found.iter().all(Summary::predicts))
 }

@@ -1,11 +1,11 @@
 //! `vm run`: a muscle over a file of inputs.
 
-use super::ModeName;
+use super::{CSV, ModeName, check_ending, complain};
 use crate::engine::{self, Arithmetic, Class};
 use crate::model_muscle;
 use crate::muscle_file::NamedMuscle;
 use crate::muscles::find;
-use crate::reference::Muscle;
+use crate::reference::{Mode, Muscle};
 use crate::trace::{self, InputTrace, OutputRow};
 use clap::{Args, ValueEnum};
 use std::error::Error;
@@ -23,7 +23,7 @@ pub struct RunArgs {
     #[arg(long)]
     input: PathBuf,
     /// Outputs, in CSV; `-` is standard output.
-    #[arg(long, default_value = "run.csv")]
+    #[arg(long, visible_alias = "out", default_value = "run.csv")]
     output: PathBuf,
     /// Recruitment mode.
     #[arg(long, value_enum, default_value = "continuous")]
@@ -42,7 +42,12 @@ pub fn run(args: &RunArgs) -> Result<(), Box<dyn Error>> {
     let class = args.class.unwrap_or(class);
     let trace = trace::read_inputs(&args.input)?;
     check_run(&args.output, &args.input, &args.muscle, &muscle, &trace)?;
-    let computed = engine::run_in_class(&muscle, args.mode.into(), args.arithmetic, class, &trace)?;
+    let mode: Mode = args.mode.into();
+    if mode != Mode::Fes && trace.inputs.iter().any(|input| input.stimulation_frequency != 0.0) {
+        let name = engine::mode_name(mode);
+        complain(&format!("stim_hz is ignored in mode {name}; --mode fes uses it"));
+    }
+    let computed = engine::run_in_class(&muscle, mode, args.arithmetic, class, &trace)?;
     let rows: Vec<OutputRow> = computed
         .iter()
         .enumerate()
@@ -111,6 +116,7 @@ pub(super) fn check_run(
     muscle: &Muscle,
     trace: &InputTrace,
 ) -> Result<(), Box<dyn Error>> {
+    check_ending("--output", output, CSV)?;
     for (read, file) in [("--input", input), ("--muscle", muscle_file)] {
         if trace::same_file(output, file) {
             let output = output.display();
@@ -121,9 +127,8 @@ pub(super) fn check_run(
     let first = trace.inputs[0].path_length;
     if !(shortest..=longest).contains(&first) {
         let problem = format!(
-            "{first}: the muscle rests in the first row, so the path must be {shortest:.6} m (a slack \
-             tendon, and fascicles at the pole of FV) to {longest:.6} m (fascicles where n_f = 0.2, \
-             or 10 F0)"
+            "{first}: the muscle rests in the first row, so the path must be {shortest:.6} to \
+             {longest:.6} m, the shortest and the longest on which it can rest"
         );
         return Err(trace::cell_error(input, 2, "path_length_m", problem).into());
     }

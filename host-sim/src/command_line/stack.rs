@@ -25,7 +25,7 @@ pub struct StackArgs {
     /// Also fail if the tables of firmware/README.md have drifted.
     #[arg(long)]
     check: bool,
-    /// Write the tables of firmware/README.md.
+    /// Write the tables of firmware/README.md of the checkout that this program was built in.
     #[arg(long, conflicts_with = "check")]
     write: bool,
 }

@@ -1,6 +1,6 @@
 //! `vm sweep`.
 
-use super::{ModeName, print};
+use super::{CSV, ModeName, check_ending, print};
 use crate::engine::{Arithmetic, Class, mode_name, status_names};
 use crate::markdown_table::markdown_table;
 use crate::sweep::{KEYS, Space, Sweep, Variation};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = keys())]
 pub struct SweepArgs {
     /// Output table, in CSV; an incomplete table of the same sweep is resumed.
-    #[arg(long, default_value = "sweep.csv")]
+    #[arg(long, visible_alias = "out", default_value = "sweep.csv")]
     output: PathBuf,
     /// Number of random cases per mode, instead of a grid.
     #[arg(long, value_name = "COUNT")]
@@ -113,6 +113,7 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
         return replay(&sweep, case, folder);
     }
     let output = &args.output;
+    check_ending("--output", output, CSV)?;
     let ledger = sweep.run(output)?;
     let header = ["arithmetic", "max % F0", "status", "replay: cargo vm sweep ..."];
     let mut table = markdown_table(&header, []);

@@ -3,7 +3,7 @@
 use super::error::FitError;
 use super::problem::Problem;
 use super::solve::Search;
-use super::statistics::{Estimate, Pair, statistics};
+use super::statistics::{Estimate, Pair, Series, statistics};
 use super::trials::{Role, Trials};
 use crate::engine::{self, Arithmetic, RunError};
 use crate::metrics::ForceError;
@@ -70,6 +70,10 @@ pub struct Fit {
 /// Arithmetics that a fitted muscle is run in, besides `f64`.
 pub const CONFIRMED: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
 
+/// Residuals below this share of the stated noise are far below it: by chance the root mean square of
+/// as few as 24 readings with that noise is there less than once in 1,000 times.
+const BELOW_NOISE: f64 = 0.55;
+
 /// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass. The
 /// result is run again in the arithmetics `confirm`. If fixed point is among them, the search is
 /// limited to muscles that it accepts.
@@ -102,7 +106,7 @@ pub fn fit(
     };
     let f0 = problem.f0(values);
     let all = played(Arithmetic::F64)?;
-    let series: Vec<Vec<f64>> = problem
+    let series: Vec<Series> = problem
         .trials
         .trials
         .iter()
@@ -110,7 +114,9 @@ pub fn fit(
         .filter(|(trial, _)| trial.role == Role::Fit)
         .map(|(trial, played)| {
             let scale = trial.weight.sqrt() / noise;
-            played.model.iter().zip(&played.measured).map(|(m, f)| scale * (m - f)).collect()
+            let pairs = played.model.iter().zip(&played.measured);
+            let residuals = pairs.map(|(m, f)| scale * (m - f)).collect();
+            Series { weight: trial.weight, residuals }
         })
         .collect();
     let found = statistics(problem.parameters(), values, &jacobian, &series);
@@ -160,6 +166,14 @@ pub fn fit(
         confirmed,
         starts: (search.starts, near),
     })
+}
+
+impl Fit {
+    /// Whether the residuals are far below the stated noise, which then is too large or no noise at
+    /// all.
+    pub fn is_below_noise(&self) -> bool {
+        self.noise_ratio < BELOW_NOISE
+    }
 }
 
 impl TrialFit {

@@ -133,6 +133,12 @@ impl Recording {
         }
     }
 
+    /// Refuses the first value for which `problem` has something to say.
+    pub fn check(&self, problem: &dyn Fn(f64) -> Option<String>) -> Result<(), TraceError> {
+        let first = self.rows.iter().enumerate().find_map(|(i, row)| Some((i, problem(row.1)?)));
+        first.map_or(Ok(()), |(index, problem)| Err(self.wrong(index, problem)))
+    }
+
     fn wrong(&self, index: usize, problem: String) -> TraceError {
         let line = self.rows.get(index).map_or(1, |row| row.2);
         cell_error(&self.path, line, &self.column, problem)

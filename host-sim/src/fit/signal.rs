@@ -1,7 +1,7 @@
 //! A signal of a trial: constant, steps or a recording, with a scale and an offset, which may be a
 //! free parameter.
 
-use super::error::FitError;
+use super::error::{FitError, Refuse};
 use super::recording::{Column, Recording, Source};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -136,6 +136,36 @@ impl Signal {
         match &self.shape {
             Shape::Recorded(recording) => Some(recording),
             _ => None,
+        }
+    }
+
+    /// Refuses values outside `limits` during a trial, with the place of a recorded one. A free
+    /// offset is not known before the fit; such a signal is taken as it is.
+    pub fn check(
+        &self,
+        key: &str,
+        limits: (f64, f64),
+        during: (f64, f64),
+        refuse: Refuse<'_>,
+    ) -> Result<(), FitError> {
+        let Offset::Fixed(_) = self.offset else { return Ok(()) };
+        let (least, most) = limits;
+        // Scaling rounds.
+        let rounding = 1e-9 * most;
+        let wrong = |raw: f64| {
+            let value = self.scaled(raw, &[]);
+            let within = (least - rounding..=most + rounding).contains(&value);
+            (!within).then(|| format!("{key} = {value}: must be {least} to {most}"))
+        };
+        match &self.shape {
+            Shape::Constant(constant) => wrong(*constant).map_or(Ok(()), |why| Err(refuse(why))),
+            Shape::Steps(steps) => {
+                let first = steps.iter().find_map(|&(_, value)| wrong(value));
+                first.map_or(Ok(()), |why| Err(refuse(why)))
+            }
+            Shape::Recorded(recording) => {
+                Ok(recording.between(during.0, during.1).check(&|value| wrong(value))?)
+            }
         }
     }
 

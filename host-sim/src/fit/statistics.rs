@@ -3,7 +3,9 @@
 //! With J the derivatives of the residuals and s² their variance, the covariance of the parameters
 //! is (JᵀJ/s² + P)⁻¹ with the precision P of the priors. Residuals of an imperfect model are
 //! autocorrelated: s² is multiplied by (1 + r)/(1 - r) with their lag-1 autocorrelation r, the
-//! variance of the mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41).
+//! variance of the mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41). It is never
+//! less than that of the stated noise: residuals below it are those of a recording that was averaged
+//! or computed, or of one that the fit follows, and say nothing about the noise of its readings.
 
 use super::parameters::Parameter;
 use nalgebra::DMatrix;
@@ -68,19 +70,30 @@ pub struct Statistics {
     pub noise_ratio: f64,
 }
 
+/// Residuals of a trial of role fit.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Weight of the squared residuals.
+    pub weight: f64,
+    /// Residuals over the stated noise, times the root of the weight.
+    pub residuals: Vec<f64>,
+}
+
 /// Statistics of a solution. `jacobian` has the derivatives by each parameter in units of its
 /// range, `series` the residuals of each trial.
 pub fn statistics(
     parameters: &[Parameter],
     values: &[f64],
     jacobian: &DMatrix<f64>,
-    series: &[Vec<f64>],
+    series: &[Series],
 ) -> Statistics {
-    let count: usize = series.iter().map(Vec::len).sum();
-    let squares: f64 = series.iter().flatten().map(|r| r * r).sum();
+    let count: usize = series.iter().map(|one| one.residuals.len()).sum();
+    let squares: f64 = series.iter().flat_map(|one| &one.residuals).map(|r| r * r).sum();
+    // Mean square of residuals that are the stated noise.
+    let weights: f64 = series.iter().map(|one| one.weight * one.residuals.len() as f64).sum();
+    let stated = weights / count.max(1) as f64;
     let freedom = count.saturating_sub(parameters.len()).max(1) as f64;
-    // Lower bound for a perfect fit: rounding errors.
-    let variance = (squares / freedom).max(1e-12) * inflation(series);
+    let variance = (squares / freedom * inflation(series)).max(stated);
     let at_bound: Vec<bool> =
         parameters.iter().zip(values).map(|(p, &value)| p.is_at_bound(value)).collect();
     let free: Vec<usize> = (0..parameters.len()).filter(|&index| !at_bound[index]).collect();
@@ -127,14 +140,14 @@ pub fn statistics(
             }
         }
     }
-    let noise_ratio = (squares / count.max(1) as f64).sqrt();
+    let noise_ratio = (squares / weights).sqrt();
     Statistics { estimates, pairs, undetermined, noise_ratio }
 }
 
 /// Inflation of the variance of a series by autocorrelation.
-fn inflation(series: &[Vec<f64>]) -> f64 {
+fn inflation(series: &[Series]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
-    for residuals in series {
+    for Series { residuals, .. } in series {
         products += residuals.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
         squares += residuals.iter().map(|r| r * r).sum::<f64>();
     }
@@ -161,6 +174,10 @@ mod tests {
         Parameter { name, place, start: 0.0, bounds: (-5.0, 5.0), prior }
     }
 
+    fn series(residuals: Vec<f64>) -> [Series; 1] {
+        [Series { weight: 1.0, residuals }]
+    }
+
     /// A straight line a + b t through readings 0.1 apart with residuals of ±1, against the
     /// textbook formulas.
     #[test]
@@ -171,7 +188,7 @@ mod tests {
             10.0 * if column == 0 { 1.0 } else { times[row] }
         });
         let parameters = [parameter("a", None), parameter("b", None)];
-        let found = statistics(&parameters, &[0.5, 0.25], &jacobian, &[residuals]);
+        let found = statistics(&parameters, &[0.5, 0.25], &jacobian, &series(residuals));
         let (n, mean) = (1000.0, 49.95);
         let spread: f64 = times.iter().map(|t| (t - mean).powi(2)).sum();
         let variance: f64 = n / (n - 2.0);
@@ -186,12 +203,27 @@ mod tests {
         assert!((found.noise_ratio - 1.0).abs() < 1e-12);
     }
 
+    /// The error of a mean of 100 readings with a noise of 1 is 0.1, whatever the residuals are.
+    #[test]
+    fn residuals_below_the_stated_noise_do_not_narrow_the_intervals() {
+        for (weight, size) in [(1.0, 0.0), (1.0, 1e-3), (4.0, 1e-3)] {
+            // In units of the range, 10.
+            let jacobian = DMatrix::from_element(100, 1, 10.0 * f64::sqrt(weight));
+            let slow = (0..100).map(|i| size * (f64::from(i) * 0.1).sin()).collect();
+            let series = [Series { weight, residuals: slow }];
+            let found = statistics(&[parameter("a", None)], &[0.0], &jacobian, &series);
+            let error = found.estimates[0].standard_error.expect("not at a bound");
+            assert!((error - 0.1).abs() < 1e-9, "{weight} {size}: {error}");
+            assert!(found.noise_ratio <= size, "{found:?}");
+        }
+    }
+
     #[test]
     fn undetermined_parameters_are_named_or_left_at_their_prior() {
         // The recordings determine only a + b.
         let jacobian = DMatrix::from_element(100, 2, 10.0);
         let residuals: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        let series = [residuals];
+        let series = series(residuals);
         let neither = [parameter("a", None), parameter("b", None)];
         let found = statistics(&neither, &[0.0, 0.0], &jacobian, &series);
         assert_eq!(found.undetermined, ["a", "b"]);
@@ -207,9 +239,9 @@ mod tests {
     #[test]
     fn autocorrelated_residuals_inflate_the_variance() {
         let alternating =
-            inflation(&[(0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect()]);
+            inflation(&series((0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect()));
         let slow: Vec<f64> = (0..100).map(|i| (f64::from(i) * 0.1).sin()).collect();
         assert_eq!(alternating, 1.0);
-        assert!(inflation(&[slow]) > 100.0);
+        assert!(inflation(&series(slow)) > 100.0);
     }
 }

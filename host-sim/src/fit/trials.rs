@@ -10,6 +10,7 @@ use super::keys;
 use super::parameters::{Parameter, Place};
 use crate::muscle_file::NamedMuscle;
 use crate::muscle_file::curve::{self, CurveTable};
+use crate::trace::check_time_step;
 use free::FreeTable;
 use serde::Deserialize;
 use std::path::Path;
@@ -38,6 +39,8 @@ fn one() -> f64 {
 pub struct Trials {
     /// Standard deviation of a force reading, N.
     pub noise: f64,
+    /// The key that states it.
+    pub stated: &'static str,
     /// Time step of the model, s.
     pub time_step: f64,
     /// All trials.
@@ -70,14 +73,17 @@ impl Trials {
         let file: TrialsFile = toml::from_str(text)
             .map_err(|error| refuse(error.to_string().trim_end().to_owned()))?;
         let muscle = &start.muscle;
-        let noise = match (file.noise_n, file.noise_pct_f0) {
-            (Some(noise), None) => noise,
-            (None, Some(percent)) => percent * 1e-2 * muscle.f0(),
+        let (noise, stated) = match (file.noise_n, file.noise_pct_f0) {
+            (Some(noise), None) => (noise, "noise_n"),
+            (None, Some(percent)) => (percent * 1e-2 * muscle.f0(), "noise_pct_f0"),
             _ => return Err(refuse("give one of noise_n and noise_pct_f0".to_owned())),
         };
         if !(noise > 0.0 && noise.is_finite()) {
             return Err(refuse(format!("noise = {noise} N: must be more than 0")));
         }
+        let (time_step_ms, time_step) = (file.time_step_ms, file.time_step_ms * 1e-3);
+        check_time_step(time_step, 1e3)
+            .map_err(|limit| refuse(format!("time_step_ms = {time_step_ms}: {limit}")))?;
         // The list's curve takes precedence: it may have been recorded with another electrode.
         let curve = file.recruitment_curve.map(CurveTable::params).or(start.curve);
         if let Some((key, value, limit)) = curve.as_ref().and_then(curve::refusal) {
@@ -109,7 +115,7 @@ impl Trials {
             .iter()
             .map(|table| table.read(folder, &offsets, curve.is_some(), refuse))
             .collect::<Result<Vec<_>, _>>()?;
-        let all = Self { noise, time_step: file.time_step_ms * 1e-3, trials, parameters, curve };
+        let all = Self { noise, stated, time_step, trials, parameters, curve };
         all.check(refuse)?;
         Ok(all)
     }

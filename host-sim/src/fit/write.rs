@@ -60,6 +60,9 @@ fn comments(fit: &Fit, origin: &str) -> Result<String, std::fmt::Error> {
         fit.noise_ratio,
         digits(fit.noise)
     )?;
+    if fit.is_below_noise() {
+        writeln!(text, "# They are far below it: the intervals are those of the stated noise.")?;
+    }
     for confirmed in &fit.confirmed {
         let (max, rms) = confirmed.difference;
         let name = confirmed.arithmetic.name();

@@ -19,6 +19,11 @@ pub const FIT: Place = Place {
     file: "README.md",
     markers: Some(["<!-- fit: cargo vm readme --write -->", "<!-- end of fit -->"]),
 };
+/// The worst scenario of each arithmetic and mode.
+pub const WORST: Place = Place {
+    file: "host-sim/docs/accuracy.md",
+    markers: Some(["<!-- worst: cargo vm readme --write -->", "<!-- end of worst -->"]),
+};
 /// Accuracy of every scenario.
 pub const MEASURED: Place = Place {
     file: "host-sim/docs/accuracy.md",
@@ -46,7 +51,7 @@ pub const STACK: Place = Place {
 pub const RECOVERY: Place = Place {
     file: "host-sim/docs/fitting.md",
     markers: Some([
-        "<!-- recovery: cargo vm recover --output FILE --write -->",
+        "<!-- recovery: cargo vm recover --patients N --output FILE --write -->",
         "<!-- end of recovery -->",
     ]),
 };

@@ -1,10 +1,43 @@
 //! The measured tables as Markdown.
 
 use crate::cycles::{self, Core, Share};
+use crate::engine::Class;
 use crate::scenario::paper_muscle;
 use crate::stack;
+use crate::tolerance;
 use crate::verify::{Report, Row};
 use std::collections::BTreeMap;
+
+/// The worst scenario of each mode and arithmetic at 1 ms and its promise, where the usual promise
+/// holds; then the worst of the scenarios with a wider one.
+pub fn worst(report: &Report) -> String {
+    let mut text = String::from(
+        "| mode | arithmetic | worst scenario | error % | promised % |\n|---|---|---|---:|---:|\n",
+    );
+    let promise = |row: &Row| {
+        let key = [&row.scenario, &row.mode, &row.arithmetic, &row.against].map(Clone::clone);
+        // F0 matters to the reference only, which is not listed.
+        tolerance::promise(&key, Class::Standard, 1.0).0
+    };
+    let rows = || ["f32", "fixed"].into_iter().flat_map(|name| at_1_ms(report, name));
+    let usual = rows().map(promise).fold(f64::INFINITY, f64::min);
+    let is_usual = |row: &&Row| promise(row) <= usual;
+    let largest = |found: Vec<&'_ Row>| {
+        found.into_iter().max_by(|a, b| a.max_pct_f0.total_cmp(&b.max_pct_f0)).map(|row| {
+            let (error, promised) = (row.max_pct_f0, promise(row));
+            let names = format!("{} | {} | {}", row.mode, row.arithmetic, row.scenario);
+            format!("| {names} | {error:.4} | {promised} |\n")
+        })
+    };
+    for mode in ["continuous", "fes"] {
+        for arithmetic in ["f32", "fixed"] {
+            let of = |row: &&Row| row.mode == mode && row.arithmetic == arithmetic;
+            text.extend(largest(rows().filter(of).filter(is_usual).collect()));
+        }
+    }
+    text.extend(largest(rows().filter(|row| !is_usual(row)).collect()));
+    text
+}
 
 /// Accuracy of f32 and fixed point against the reference, and of the reference against the vectors.
 pub fn measured(report: &Report) -> String {

@@ -11,6 +11,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
+/// File name of the list of trials.
+pub const LIST: &str = "trials.toml";
+
 /// Short and long path relative to the neutral one, L_ce0.
 const SHORT: f64 = -0.2;
 const LONG: f64 = 0.12;
@@ -165,7 +168,7 @@ pub fn write(named: &NamedMuscle, mode: Mode, folder: &Path) -> Result<(), Write
         }
         write_atomically(&folder.join(bout.file_name()), text.as_bytes())?;
     }
-    write_atomically(&folder.join("trials.toml"), list(named, mode, &bouts).as_bytes())?;
+    write_atomically(&folder.join(LIST), list(named, mode, &bouts).as_bytes())?;
     Ok(())
 }
 

@@ -29,6 +29,9 @@ pub struct TrialTable {
     stimulation_pps: Option<SignalTable>,
 }
 
+/// Highest stimulation frequency that the model takes, pps (`vm_nostd::Input`).
+const MOST_PPS: f64 = 500.0;
+
 fn one() -> f64 {
     1.0
 }
@@ -173,6 +176,13 @@ impl TrialTable {
         let frequency = optional("stimulation_pps", &self.stimulation_pps)?;
         if mode == Mode::Fes && frequency.is_none() {
             return Err(refuse("stimulation_pps = (missing): FES needs it".to_owned()));
+        }
+        let during = (first, window.1);
+        if let Drive::Activation(activation) = &drive {
+            activation.check("activation", (0.0, 1.0), during, &refuse)?;
+        }
+        if let Some(frequency) = &frequency {
+            frequency.check("stimulation_pps", (0.0, MOST_PPS), during, &refuse)?;
         }
         Ok(Trial {
             name: self.name.clone(),
