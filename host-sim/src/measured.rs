@@ -121,11 +121,14 @@ struct Found {
     stretched: &'static [(&'static str, &'static str, f64)],
 }
 
+/// A fit, and the parameters that it held.
+type Fitted = (Fit, Vec<String>);
+
 /// Compares the model with every set of recordings in `folder`, for the versions `left_out`.
 pub fn measure(folder: &Path, left_out: &[LeftOut], search: &Search) -> Result<Board, FitError> {
     let mut board = Board::default();
     let found = find(folder, &mut board.skipped)?;
-    let fits: Vec<(&Found, LeftOut, Result<(Fit, Vec<String>), FitError>)> = found
+    let fits: Vec<(&Found, LeftOut, Result<Fitted, FitError>)> = found
         .par_iter()
         .flat_map(|set| {
             let whole = set.fitted(search);

@@ -1,5 +1,6 @@
 //! Arithmetics of the model.
 
+pub(crate) mod cold;
 pub(crate) mod fixed;
 pub(crate) mod float;
 mod series;

@@ -104,7 +104,7 @@ impl Trial<'_> {
                     .max((least - plant.angle).to_degrees());
             }
             let out = (range.least - plant.angle).max(plant.angle - range.most).to_degrees();
-            pressed |= !(out < PRESSED);
+            pressed |= out >= PRESSED || out.is_nan();
             if time > 0.75 * duration {
                 (lowest, highest) = (lowest.min(error), highest.max(error));
             }

@@ -33,7 +33,7 @@ pub struct LoopArgs {
 
 pub fn run(args: &LoopArgs) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &args.svg {
-        super::check_ending("--svg", path, "SVG", &["svg"])?;
+        super::check_ending("--svg", path, ("SVG", &["svg"]))?;
         crate::trace::check_folder(path)?;
     }
     let tasks = if args.tasks.is_empty() { Task::ALL.to_vec() } else { args.tasks.clone() };

@@ -1,6 +1,6 @@
 //! Fits the model without a feature.
 
-use super::{Found, LeftOut};
+use super::{Fitted, Found, LeftOut};
 use crate::engine::Arithmetic;
 use crate::fit::{Fit, FitError, Parameter, Place, Search, applied, fit};
 
@@ -10,11 +10,7 @@ impl Found {
     ///
     /// A parameter that the recordings do not determine without the feature keeps its value in
     /// the complete model, and is named beside the fit.
-    pub(super) fn without(
-        &self,
-        out: LeftOut,
-        whole: &Fit,
-    ) -> Result<(Fit, Vec<String>), FitError> {
+    pub(super) fn without(&self, out: LeftOut, whole: &Fit) -> Result<Fitted, FitError> {
         let mut held: Vec<String> = Vec::new();
         let mut from_whole = true;
         loop {

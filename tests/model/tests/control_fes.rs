@@ -1,5 +1,6 @@
 //! The FES controller and its parts against closed forms and computations of their own in `f64`.
 
+use std::f64::consts::FRAC_PI_2;
 use vm_nostd::control::{
     ANKLE, ControlStatus, FesController, FesControllerParams, GainEstimate, GainParams, Intervals,
     KNEE, Lead, LeadParams, Learnt, LimbParams, Measured, Modulation, Pi, PiParams, Saturated,
@@ -176,7 +177,7 @@ fn params() -> FesControllerParams<2> {
         range: KNEE.range,
         muscles: KNEE.muscles.map(|muscle| muscle.params()),
         paths: KNEE.muscles.map(|muscle| muscle.path()),
-        limb: LimbParams { inertia: 0.35, damping: 0.5, gravity: 12.0, hanging_angle: 1.5708 },
+        limb: LimbParams { inertia: 0.35, damping: 0.5, gravity: 12.0, hanging_angle: FRAC_PI_2 },
         electrodes: [electrode(); 2],
         modulation: [Modulation::Width { amplitude: 0.04 }, Modulation::Amplitude { width: 3e-4 }],
         stimulation_frequency: 30.0,
@@ -212,7 +213,7 @@ fn forward<S: Scalar>(rounding: f64) {
         let mut state = controller.start(S::from_f64(q));
         let target = Target { velocity: S::from_f64(v), acceleration: S::from_f64(a), ..still(q) };
         let command = controller.step(&mut state, target, sensed(q));
-        let exact: f64 = 0.35 * a + 0.5 * v + 12.0 * (q - 1.5708_f64).sin();
+        let exact: f64 = 0.35 * a + 0.5 * v + 12.0 * (q - FRAC_PI_2).sin();
         let found = S::quantity_value(command.torque);
         assert!((found - exact).abs() < rounding, "{q} {v} {a}: {found} {exact} N m");
     }
@@ -254,7 +255,7 @@ fn makes_the_torque<S: Scalar>(gain: f64, seconds: i32) {
             torque += gain * output.force * arm;
         }
     }
-    let exact = 12.0 * (0.2_f64 - 1.5708).sin();
+    let exact = 12.0 * (0.2_f64 - FRAC_PI_2).sin();
     assert!((asked - exact).abs() < 0.01, "{asked} {exact}");
     // 0.1 % of F0 of the stronger muscle, which is what the inverse promises.
     assert!((torque - gain * exact).abs() < 1e-3 * 5699.0 * 0.042, "{torque} {exact} N m");

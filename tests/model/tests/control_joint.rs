@@ -1,7 +1,7 @@
 //! Joints: paths, moment arms, torque and stiffness against closed forms in `f64`, and refusals.
 
 use vm_nostd::control::{
-    ANKLE, Action, AngleRange, ELBOW, Joint, JointMuscle, JointPreset, JointStatus, KNEE, ORDER,
+    ANKLE, Action, AngleRange, ELBOW, Joint, JointMuscle, JointPreset, JointStatus, KNEE,
     PathParams,
 };
 use vm_nostd::{ContinuousMuscle, FesMuscle, Fixed, Input, Scalar, TimeStep};
@@ -11,9 +11,9 @@ const PRESETS: [JointPreset; 3] = [ANKLE, KNEE, ELBOW];
 /// A path by its definition, term by term.
 fn length<const J: usize>(path: &PathParams<J>, angles: [f64; J]) -> f64 {
     let mut sum = path.length;
-    for j in 0..J {
-        for k in 0..ORDER {
-            sum += path.terms[j][k] * (angles[j] - path.reference[j]).powi(k as i32 + 1);
+    for ((terms, angle), reference) in path.terms.iter().zip(angles).zip(path.reference) {
+        for (power, term) in (1..).zip(terms) {
+            sum += term * (angle - reference).powi(power);
         }
     }
     if J == 2 {

@@ -243,7 +243,7 @@ fn bad_samples_are_flagged_and_the_command_stays_finite() {
         let input = ProsthesisInput { emg: [pick(0), pick(1)], angle: pick(2) };
         let command = prosthesis.step(&mut state, input);
         assert!(command.torque.abs() <= 400.0 && (0.0..=2000.0).contains(&command.stiffness));
-        let invalid = input.emg.iter().any(|emg| !(emg.abs() < 4.0));
+        let invalid = input.emg.iter().any(|emg| emg.is_nan() || emg.abs() >= 4.0);
         assert_eq!(command.status.contains(ProsthesisStatus::EMG_INVALID), invalid, "{input:?}");
         let lost = !input.angle.is_finite();
         assert_eq!(command.status.contains(ProsthesisStatus::ANGLE_NOT_FINITE), lost, "{input:?}");

@@ -48,12 +48,9 @@ impl Outcomes {
     pub fn add(&mut self, what: &str, outcome: &str, detail: &str) -> Result<(), String> {
         let detail = detail.lines().next().unwrap_or_default();
         let say = |error| format!("{}: {error}", self.file.display());
-        let mut file = fs::OpenOptions::new()
-            .append(true)
-            .create(true)
-            .open(&self.file)
-            .map_err(|error| say(error))?;
-        writeln!(file, "{what}\t{outcome}\t{detail}").map_err(|error| say(error))?;
+        let mut file =
+            fs::OpenOptions::new().append(true).create(true).open(&self.file).map_err(say)?;
+        writeln!(file, "{what}\t{outcome}\t{detail}").map_err(say)?;
         self.of.insert(what.into(), (outcome.into(), detail.into()));
         Ok(())
     }

@@ -43,6 +43,9 @@ struct Node {
     mutants: Vec<usize>,
 }
 
+/// The guard of an arm: its place, its pieces, and the mutants in it.
+type Guard = (Range<usize>, Vec<Piece>, Vec<usize>);
+
 /// Puts the mutants into a source, each with its number; but none that is `left_out`. Functions
 /// with a name in `evaluated` stay `const`.
 pub fn weave(
@@ -80,7 +83,7 @@ pub fn weave(
         }
     }
     // An arm and its guard are one place.
-    let mut guards: BTreeMap<usize, (Range<usize>, Vec<Piece>, Vec<usize>)> = BTreeMap::new();
+    let mut guards: BTreeMap<usize, Guard> = BTreeMap::new();
     for (&(start, genre), here) in &at {
         let (site, _) = &sites.found[&(genre, start)];
         let mutants: Vec<usize> = here.iter().map(|(number, _)| *number).collect();

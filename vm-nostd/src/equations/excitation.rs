@@ -5,10 +5,10 @@
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
+use crate::scalar::cold::cold_path;
 use crate::scalar::{Lags, Scalar};
 use crate::tick::time_step::TimeStep;
 use core::array::from_fn;
-use core::hint::cold_path;
 
 /// Time constants of excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]

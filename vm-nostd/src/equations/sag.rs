@@ -3,10 +3,10 @@
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::scalar::cold::cold_path;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
-use core::hint::cold_path;
 
 /// Coefficients of sag.
 #[derive(Clone, Copy, Debug, PartialEq)]

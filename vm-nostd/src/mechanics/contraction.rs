@@ -26,10 +26,10 @@ use crate::params::class::{Class, Substeps};
 use crate::params::limits::MAXIMUM_SPEED;
 use crate::recruitment::RecruitmentTick;
 use crate::scalar::Scalar;
+use crate::scalar::cold::cold_path;
 use crate::scalar::float::{square_root, tangent};
 use crate::tick::course::Course;
 use crate::tick::time_step::TimeStep;
-use core::hint::cold_path;
 
 /// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
 const COARSE_TICK: f64 = 0.999e-3;

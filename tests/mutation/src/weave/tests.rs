@@ -173,9 +173,9 @@ fn a_woven_mutant_does_what_it_does_alone() {
     let why = ["evaluated by the compiler: above", "chained with let", "not found in the syntax"];
     assert_eq!(apart, [(3, why[0]), (2, why[1]), (1, why[2])]);
     let woven_in = mutants.len() - apart.len();
-    for number in 0..woven_in {
+    for (number, mutant) in mutants[..woven_in].iter().enumerate() {
         let times = woven.text.matches(&format!("on({number})")).count();
-        assert_eq!(times, 1, "{}", mutants[number].name);
+        assert_eq!(times, 1, "{}", mutant.name);
     }
     let folder = std::env::temp_dir().join(format!("mutation-{}", std::process::id()));
     fs::create_dir_all(&folder).expect("a folder");

@@ -1,6 +1,7 @@
 //! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. Their bounds are
 //! asserted over their whole domains.
 
+use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
 /// 1.5 × 2^23: adding it to a number below 2^22 rounds that to a whole number in the last bits.
@@ -155,7 +156,7 @@ pub(super) fn softplus(x: f32) -> (f32, f32) {
     const ZERO: i32 = PIECES as i32 / 2;
     let place = x * SOFTPLUS_PER_UNIT as f32;
     if (place + ZERO as f32).is_sign_negative() {
-        core::hint::cold_path();
+        cold_path();
         let power = exp(x);
         return (power, power);
     }
