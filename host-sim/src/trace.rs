@@ -157,8 +157,8 @@ pub fn parse_inputs(text: &[u8], path: &Path) -> Result<InputTrace, TraceError> 
     Ok(InputTrace { start: first[0], time_step, inputs })
 }
 
-/// Refuses a time step (s) that no muscle takes; the limits are in a unit of which `per_second` make
-/// a second.
+/// Refuses a time step (s) that no muscle takes; the limits are in a unit of which `per_second`
+/// make a second.
 pub fn check_time_step(seconds: f64, per_second: f64) -> Result<(), String> {
     use vm_nostd::TimeStep;
     match TimeStep::from_seconds(seconds) {

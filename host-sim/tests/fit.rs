@@ -40,8 +40,8 @@ fn recording() -> String {
     recording_with(0.01, 7) + "1.2,0.5,0\n"
 }
 
-/// The same with another noise, a share of F0, and a reading every so many ms. With one every ms the
-/// model has the path of the recording; between others it is interpolated.
+/// The same with another noise, a share of F0, and a reading every so many ms. With one every ms
+/// the model has the path of the recording; between others it is interpolated.
 fn recording_with(share: f64, every: usize) -> String {
     let mut muscle = muscle_file::parse(MUSCLE, Path::new("m.toml")).expect("a muscle").muscle;
     muscle.mass *= FORCE / muscle.f0();

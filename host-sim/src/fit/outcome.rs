@@ -70,8 +70,8 @@ pub struct Fit {
 /// Arithmetics that a fitted muscle is run in, besides `f64`.
 pub const CONFIRMED: [Arithmetic; 3] = [Arithmetic::Reference, Arithmetic::F32, Arithmetic::Fixed];
 
-/// Residuals below this share of the stated noise are far below it: by chance the root mean square of
-/// as few as 24 readings with that noise is there less than once in 1,000 times.
+/// Residuals below this share of the stated noise are far below it: by chance the root mean square
+/// of as few as 24 readings with that noise is there less than once in 1,000 times.
 const BELOW_NOISE: f64 = 0.55;
 
 /// Fits a muscle to trials. With `keep_force`, F0 is kept if it is not free; otherwise mass. The

@@ -4,8 +4,8 @@
 //! is (JᵀJ/s² + P)⁻¹ with the precision P of the priors. Residuals of an imperfect model are
 //! autocorrelated: s² is multiplied by (1 + r)/(1 - r) with their lag-1 autocorrelation r, the
 //! variance of the mean of such a series (Bartlett, J. R. Stat. Soc. B 8 (1946) 27-41). It is never
-//! less than that of the stated noise: residuals below it are those of a recording that was averaged
-//! or computed, or of one that the fit follows, and say nothing about the noise of its readings.
+//! less than that of the stated noise: smaller residuals are those of a recording that was averaged
+//! or computed, and say nothing about the noise of its readings.
 
 use super::parameters::Parameter;
 use nalgebra::DMatrix;
