@@ -234,7 +234,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_F32_BASE 232
+#define VM_MUSCLE_F32_BASE 248
 
 /**
  * Each type.
@@ -244,7 +244,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
  */
-#define VM_UNITS_F32_BASE 4320
+#define VM_UNITS_F32_BASE 4336
 
 /**
  * Each type.
@@ -264,7 +264,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of a VmMuscleF32: two types.
  */
-#define VM_MUSCLE_F32_SIZE 584
+#define VM_MUSCLE_F32_SIZE 600
 
 /**
  * Bytes of a VmSteadyF32: two types.
@@ -289,7 +289,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_FIXED_BASE 288
+#define VM_MUSCLE_FIXED_BASE 304
 
 /**
  * Each type.
@@ -299,7 +299,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
  */
-#define VM_UNITS_FIXED_BASE 5912
+#define VM_UNITS_FIXED_BASE 5928
 
 /**
  * Each type.
@@ -319,7 +319,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of a VmMuscleFixed: two types.
  */
-#define VM_MUSCLE_FIXED_SIZE 704
+#define VM_MUSCLE_FIXED_SIZE 720
 
 /**
  * Bytes of a VmSteadyFixed: two types.
@@ -344,7 +344,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_F64_BASE 456
+#define VM_MUSCLE_F64_BASE 488
 
 /**
  * Each type.
@@ -354,7 +354,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
  */
-#define VM_UNITS_F64_BASE 8104
+#define VM_UNITS_F64_BASE 8136
 
 /**
  * Each type.
@@ -374,7 +374,7 @@ typedef struct VmCurveF64 VmCurveF64;
 /**
  * Bytes of a VmMuscleF64: two types.
  */
-#define VM_MUSCLE_F64_SIZE 1160
+#define VM_MUSCLE_F64_SIZE 1192
 
 /**
  * Bytes of a VmSteadyF64: two types.
