@@ -7,6 +7,7 @@
 
 mod controller;
 mod patient;
+mod percentile;
 mod plant;
 mod random;
 mod study;

@@ -77,7 +77,7 @@
 //! | L_mt | [`Input::path_length`] | m | `path_domain` of the muscle | `domain.rs` |
 //! | F0 F_se | [`Output::force`] | N | >= 0 | `equations/tendon.rs` |
 //! | F_se | [`Output::relative_force`] | F0 | >= 0 | `equations/tendon.rs` |
-//! | L | [`Output::fascicle_length`] | L_ce0 | `fascicle_domain` of the muscle | `mechanics/contraction.rs` |
+//! | L | [`Output::fascicle_length`] | L_ce0 | `fascicle_domain` | `mechanics/contraction.rs` |
 //! | V | [`Output::fascicle_velocity`] | L_ce0/s | -60..60 | `mechanics/contraction.rs` |
 //! | U_eff | effective activation | 1 | 0..1 | `recruitment/continuous.rs` |
 //! | W_i, Uth_i | recruitment | 1 | 0..1 | `recruitment/continuous.rs` |
@@ -90,7 +90,7 @@
 //! | S | [`SagParams`] | 1 | 0.01..10 | `equations/sag.rs` |
 //! | FL | [`ForceLengthParams`] | 1 | 0..1 | `equations/force_length.rs` |
 //! | FV | [`ForceVelocityParams`] | 1 | >= 0, V >= V_max | `equations/force_velocity.rs` |
-//! | F_pe1, F_pe2 | [`ParallelParams`], [`CompressionParams`] | F0 | any; <= 0 | `equations/passive.rs` |
+//! | F_pe1, F_pe2 | `ParallelParams`, `CompressionParams` | F0 | any, ≤0 | `equations/passive.rs` |
 //! | F_se(L_se) | [`TendonParams`] | F0 | >= 0 | `equations/tendon.rs` |
 //! | F0 | [`MuscleParams::max_isometric_force`] | N | > 0 | `params.rs` |
 //! | L_max | [`MuscleParams::maximum_fascicle_length`] | L_ce0 | 0.8..2 | `params.rs` |

@@ -7,8 +7,8 @@
 
 use super::controller::{Kind, Settings};
 use super::patient::Patient;
+use super::percentile::percentile;
 use super::random::Random;
-use super::study::percentile;
 use super::task::Task;
 use super::trial::Trial;
 use rayon::prelude::*;

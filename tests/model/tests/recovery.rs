@@ -26,8 +26,9 @@ fn abuse() -> impl Strategy<Value = Vec<(f64, f64, f64)>> {
     prop::collection::vec((activation, path, frequency), 1..25)
 }
 
-/// How far the force is from that of a muscle at rest, % of F0, after 20 ticks of each of the inputs
-/// and [`REST`] on a path at a share of the range; and the fascicles' length at rest there, L_ce0.
+/// How far the force is from that of a muscle at rest, % of F0, after 20 ticks of each of the
+/// inputs and [`REST`] on a path at a share of the range; and the fascicles' length at rest there,
+/// L_ce0.
 fn left_after<S: Scalar, R: Mode<S>>(
     params: &Params,
     step: TimeStep,

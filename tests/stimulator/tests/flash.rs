@@ -1,5 +1,5 @@
-//! Failures of the chip's flash, per its manual: a part in this process that stays busy or keeps flags
-//! of old errors.
+//! Failures of the chip's flash, per its manual: a part in this process that stays busy or keeps
+//! flags of old errors.
 
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 use firmware::flash::{Flash, FlashController, FlashError, MOST_ERASE_MS};

@@ -1,5 +1,5 @@
-//! Failures of the chip's noise generator, per its manual: a part in this process that errs, repeats
-//! itself or gives nothing.
+//! Failures of the chip's noise generator, per its manual: a part in this process that errs,
+//! repeats itself or gives nothing.
 
 use firmware::{Noise, NoiseGenerator, NoiseStatus, Randomness};
 use std::collections::VecDeque;

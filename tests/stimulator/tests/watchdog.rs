@@ -1,5 +1,5 @@
-//! Failures of the chip's watchdog, per its manual: registers in this process that take a change late
-//! or never.
+//! Failures of the chip's watchdog, per its manual: registers in this process that take a change
+//! late or never.
 
 use firmware::flash::{MOST_ERASE_MS, MOST_STORE_MS};
 use firmware::watchdog::{

@@ -1,4 +1,5 @@
-//! The functions of a muscle in an arithmetic, written once. cbindgen does not expand macros: for the header,
+//! The functions of a muscle in an arithmetic, written once. cbindgen does not expand macros: for
+//! the header,
 //! `tests/tests/c_api.rs` replaces each `$name` by what an arithmetic's file gives for it.
 
 macro_rules! functions {

@@ -1,9 +1,9 @@
 //! On-line estimate of a muscle's gain: the torque it makes over the torque the model expects.
 //!
-//! The model's inverse is asked for a torque c = τ/ĝ + p: the feed-forward torque over the estimate,
-//! and what the feedback adds. If the muscle makes g c, tracking needs g c = τ, and p says how far
-//! the estimate is off: dĝ/dt = -(p/c)/T moves it until p is 0. It is a gradient rule, slower than
-//! the feedback so that both do not fight.
+//! The model's inverse is asked for a torque c = τ/ĝ + p: the feed-forward torque over the
+//! estimate, and what the feedback adds. If the muscle makes g c, tracking needs g c = τ, and p
+//! says how far the estimate is off: dĝ/dt = -(p/c)/T moves it until p is 0. It is a gradient rule,
+//! slower than the feedback so that both do not fight.
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};

@@ -2,9 +2,9 @@
 
 use super::number::high;
 
-/// The polynomial with terms by powers of x, the constant first, in Q8.24, for x in Q8.24 between -1
-/// and 1. Each product is cut by less than two units: of eight terms, the value is within 16 units.
-///
+/// The polynomial with terms by powers of x, the constant first, in Q8.24, for x in Q8.24 between
+/// -1 and 1. Each product is cut by less than two units: of eight terms, the value is within 16
+/// units.
 /// # Scaling and overflow
 /// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of
 /// terms add to 100 at most: so does what is summed up at any step.

@@ -111,8 +111,8 @@ const PIECES: usize = 128;
 /// Value of a function in pieces, and its slope by pieces, at a `place` in pieces; the piece that
 /// starts at 0 is number `zero`. Before the first and beyond the last, as these go on.
 ///
-/// The share of a piece is taken from the place itself, so that no bit of it is lost in the number of
-/// the piece.
+/// The share of a piece is taken from the place itself, so that no bit of it is lost in the number
+/// of the piece.
 #[inline(always)]
 fn piecewise(pieces: &[[f32; 4]; PIECES], place: f32, zero: i32) -> (f32, f32) {
     let index = ((place + zero as f32) as i32).clamp(0, PIECES as i32 - 1);
