@@ -177,7 +177,8 @@ impl<S: Scalar> Modelled<S> {
                 electrodes: [ELECTRODE; 2],
                 modulation: [Modulation::Width { amplitude: AMPLITUDE }; 2],
                 stimulation_frequency: FREQUENCY,
-                // Even a little of it stimulates at the threshold, of which the controller is not sure.
+                // Even a little of it stimulates at the threshold, of which the controller is not
+                // sure.
                 cocontraction: if cocontraction < NO_COCONTRACTION {
                     0.0
                 } else {

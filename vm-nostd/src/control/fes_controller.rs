@@ -278,7 +278,8 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         state.expected = self.expected.at_end(state.expected, wanted);
         let error = S::of(state.expected) - measured;
         let fed_back = self.feedback.step(&mut state.feedback, error, state.saturated);
-        // The gain scales the feed-forward alone: an estimate that is off cannot destabilise the loop.
+        // The gain scales the feed-forward alone: an estimate that is off cannot destabilise the
+        // loop.
         let forward = forward.ratio(S::of(state.gain));
         let (torque, limited) = self.torque.clip(forward + fed_back);
         status.set(ControlStatus::TORQUE_LIMITED, limited);

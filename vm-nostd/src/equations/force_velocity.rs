@@ -169,7 +169,8 @@ impl<S: Scalar> ForceVelocity<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// Whether a velocity is at or beyond V_max, where FV is 0, and the paper's expression negative.
+    /// Whether a velocity is at or beyond V_max, where FV is 0, and the paper's expression
+    /// negative.
     pub(crate) fn is_beyond(&self, velocity: S) -> bool {
         velocity <= self.maximum_velocity
     }
