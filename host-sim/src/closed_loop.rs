@@ -1,9 +1,10 @@
 //! Controllers of stimulation in closed loop, on patients that differ from the model.
 //!
 //! The plant is the model in `f64` with parameters that the controllers do not know and structure
-//! that they do not have ([`Patient`], [`Plant`]). Three controllers are compared, each tuned by
-//! the same tuner with the same number of evaluations on patients that are not scored: PI on pulse
-//! width, PI through a static recruitment curve, and the controller of `vm_nostd::control`.
+//! that they do not have ([`Patient`], [`Plant`]). The controllers compared are PI on pulse
+//! width, PI and PID through a static recruitment curve, and that of `vm_nostd::control` in `f32`
+//! and fixed point. All are tuned by the same tuner with the same number of evaluations, on
+//! patients that are not scored; fixed point takes the settings tuned in `f32`.
 
 mod controller;
 mod patient;

@@ -84,7 +84,7 @@ impl<'a> Program<'a> {
     /// An image built for the board of a core.
     pub fn on_board(image: &'a Path, core: Core) -> Self {
         let machine = core.board().machine;
-        Self { image, machine, core, arguments: Vec::new(), timeout: PATIENCE }
+        Self { image, machine, core, arguments: Vec::new(), timeout: TIMEOUT }
     }
 }
 
@@ -98,7 +98,7 @@ pub struct Block {
 }
 
 /// Timeout of the bench.
-const PATIENCE: Duration = Duration::from_secs(1200);
+const TIMEOUT: Duration = Duration::from_secs(1200);
 /// Timeout until QEMU has loaded the plugin.
 const START: Duration = Duration::from_secs(60);
 

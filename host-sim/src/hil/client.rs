@@ -34,7 +34,7 @@ pub enum HilError {
     #[error("serial line: {0}")]
     Line(#[from] std::io::Error),
     /// No answer.
-    #[error("no answer to {request} within {PATIENCE:?}")]
+    #[error("no answer to {request} within {TIMEOUT:?}")]
     Silence {
         /// The request.
         request: &'static str,
@@ -93,12 +93,12 @@ pub enum HilError {
 }
 
 /// Longest wait for an answer.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 /// A request is repeated after this time without an answer: longer than the device takes to store
 /// a muscle.
 const AGAIN: Duration = Duration::from_millis(MOST_STORE_MS as u64 + 1_000);
 // If flash hangs, the watchdog restarts the device, which then reports that it has no session.
-const _: () = assert!(PATIENCE.as_millis() > DISARMED.most_ms() as u128 + AGAIN.as_millis());
+const _: () = assert!(TIMEOUT.as_millis() > DISARMED.most_ms() as u128 + AGAIN.as_millis());
 
 /// Repetition time of the greeting.
 const GREET_AGAIN: Duration = Duration::from_millis(300);
@@ -174,7 +174,7 @@ impl<L: Line> Client<L> {
         self.sequence = sequence.wrapping_add(1);
         self.send_raw(&frame)?;
         let (started, mut sent) = (Instant::now(), Instant::now());
-        while started.elapsed() < PATIENCE {
+        while started.elapsed() < TIMEOUT {
             match self.hear()? {
                 Heard::Answer(to, answer) if to == sequence => {
                     return answer.map_err(|(reason, no_room)| HilError::Refused {
@@ -213,7 +213,7 @@ impl<L: Line> Client<L> {
         let started = Instant::now();
         let mut sent: Option<Instant> = None;
         let mut refused = None;
-        while started.elapsed() < PATIENCE {
+        while started.elapsed() < TIMEOUT {
             if sent.is_none_or(|sent| sent.elapsed() > GREET_AGAIN) {
                 let sequence = self.sequence;
                 self.sequence = sequence.wrapping_add(1);

@@ -126,14 +126,29 @@ impl<S: Scalar> Summed for Electrode<S> {
 
 impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
     fn sum(&self, checksum: &mut Checksum) {
-        let Self { range, joint, limb, inverses, electrodes, cocontraction, .. } = self;
+        // Without `..`: a field that is added has to be summed.
+        let Self {
+            range,
+            joint,
+            limb,
+            inverses,
+            electrodes,
+            cocontraction,
+            feedback,
+            of_torque,
+            expected,
+            gain,
+            torque,
+            per_torque,
+            frequency,
+            most_motion,
+        } = self;
         range.sum(checksum);
         joint.sum(checksum);
         limb.sum(checksum);
         inverses.sum(checksum);
         electrodes.sum(checksum);
         cocontraction.sum(checksum);
-        let Self { feedback, of_torque, expected, gain, torque, per_torque, frequency, .. } = self;
         feedback.sum(checksum);
         u8::from(*of_torque).sum(checksum);
         expected.sum(checksum);
@@ -143,7 +158,7 @@ impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
         torque.sum(checksum);
         per_torque.sum(checksum);
         frequency.sum(checksum);
-        self.most_motion.sum(checksum);
+        most_motion.sum(checksum);
     }
 }
 
