@@ -9,6 +9,7 @@
 mod controller;
 mod patient;
 mod percentile;
+mod picture;
 mod plant;
 mod random;
 mod study;
@@ -18,8 +19,9 @@ mod tuner;
 
 pub use controller::{Controller, Kind, Settings};
 pub use patient::Patient;
+pub use picture::picture;
 pub use plant::Plant;
-pub use study::{Row, Study, StudyError, run};
+pub use study::{COLUMNS, Row, Study, StudyError, run};
 pub use task::Task;
 pub use trial::{Instant, Score, Trial};
 pub use tuner::Tuned;

@@ -1,6 +1,7 @@
 //! All measurements in one HTML file that needs no network.
 
 use crate::chart::{Chart, Line, Panel, Point};
+use crate::closed_loop::{self, Study, StudyError, Task};
 use crate::cycles;
 use crate::engine::{Arithmetic, Class, RunError};
 use crate::figures::{Claim, Figures, FiguresError};
@@ -43,6 +44,9 @@ pub enum ReportError {
         /// The parser's error.
         source: serde_json::Error,
     },
+    /// The closed loop could not be run.
+    #[error(transparent)]
+    ClosedLoop(#[from] StudyError),
     /// The template failed.
     #[error(transparent)]
     Page(#[from] askama::Error),
@@ -79,6 +83,7 @@ struct Page<'a> {
     errors: Vec<Plot>,
     figures: Vec<Plot>,
     claims: Vec<Claim>,
+    closed_loop: String,
     cycles: Vec<cycles::Row>,
     golden: Golden,
     differences: Vec<String>,
@@ -116,11 +121,19 @@ pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
         errors: report.traces.iter().map(plot).collect(),
         figures,
         claims,
+        closed_loop: untuned_loop()?,
         cycles,
         golden: golden::committed()?,
         differences,
     };
     Ok(page.render()?)
+}
+
+/// One patient's reach under every controller, as they are before tuning, which takes minutes.
+fn untuned_loop() -> Result<String, StudyError> {
+    let task = Task::ElbowReach;
+    let study = Study { tasks: vec![task], patients: 1, tuning_patients: 1, evaluations: 1 };
+    Ok(closed_loop::picture(task, &closed_loop::run(&study)?)?)
 }
 
 fn read_cycles(path: &Path) -> Result<Vec<cycles::Row>, ReportError> {

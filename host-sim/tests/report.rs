@@ -61,14 +61,19 @@ fn the_page_is_complete() {
             page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
         assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
     }
-    // Every scenario at 1 ms has its plot, with axes, units and a legend; and there are six
-    // figures.
+    // Every scenario at 1 ms has its plot, with axes, units and a legend; there are six
+    // figures and the closed loop.
     let scenarios = page.matches("error (% of F0)").count();
     assert!(scenarios >= 38, "{scenarios} plots");
-    assert_eq!(page.matches("<svg ").count(), scenarios + 6);
-    for label in
-        ["time (s)", "force (N)", "elbow angle (degrees)", "activation U (1)", "frequency (Hz)"]
-    {
+    assert_eq!(page.matches("<svg ").count(), scenarios + 7);
+    for label in [
+        "time (s)",
+        "force (N)",
+        "elbow angle (degrees)",
+        "pulse width (us)",
+        "activation U (1)",
+        "frequency (Hz)",
+    ] {
         assert!(page.contains(label), "{label}");
     }
     assert!(page.matches(">fixed</text>").count() >= scenarios, "legends");

@@ -11,10 +11,14 @@ use core::hint::black_box;
 use cortex_m_rt::entry;
 use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
+use vm_nostd::control::{
+    ELBOW, FesCommand, FesController, FesControllerParams, FesControllerState, GainParams,
+    JointError, LimbParams, Measured, Modulation, PiParams, Sensors, Target,
+};
 use vm_nostd::{
-    ActingLength, Class, EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes,
-    MotorUnits, Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Output, ParameterError,
-    Recruitment, Scalar, State, TimeStep, UnitSizes,
+    ActingLength, Class, EffectiveLength, FascicleLength, FatigueParams, Fixed, Input,
+    IntramuscularFes, MotorUnits, Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Output,
+    ParameterError, Recruitment, RecruitmentCurveParams, Scalar, State, TimeStep, UnitSizes,
 };
 
 static INPUTS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/bench_inputs.bin"));
@@ -67,6 +71,23 @@ literal!(literal_continuous_f64, f64, input => Drive::Natural(input.activation.i
 literal!(literal_fes_f64, f64, input => {
     Drive::Fes(input.activation.into(), input.stimulation_frequency.into())
 });
+
+/// A tick of the FES controller, under a name of its own for each arithmetic.
+macro_rules! control {
+    ($name:ident, $scalar:ty) => {
+        #[inline(never)]
+        fn $name(
+            controller: &FesController<$scalar, 2>,
+            state: &mut FesControllerState<$scalar>,
+            target: Target<$scalar>,
+            sensors: Sensors<$scalar>,
+        ) -> FesCommand<$scalar> {
+            controller.step(state, target, sensors)
+        }
+    };
+}
+control!(step_controller_f32, f32);
+control!(step_controller_fixed, Fixed);
 
 #[inline(never)]
 fn kernels_f32(input: Input<f32>) -> f32 {
@@ -132,7 +153,9 @@ fn drive_all() -> Result<(), ParameterError> {
     model_of_units(15, 3, step_leff_6_f32)?;
     model_of_units(16, 6, step_leff_12_f32)?;
     model_of_units(17, 15, step_leff_30_f32)?;
-    model_of_units(18, 30, step_leff_60_f32)
+    model_of_units(18, 30, step_leff_60_f32)?;
+    controller(19, step_controller_f32).map_err(|refused| refused.error)?;
+    controller(20, step_controller_fixed).map_err(|refused| refused.error)
 }
 
 /// What steps a muscle.
@@ -192,6 +215,60 @@ fn literal<R: literal_port::Real + From<f32>>(
     tick: fn(&mut LiteralMuscle<R>, Input<f32>) -> R,
 ) -> Result<(), ParameterError> {
     drive(case, |path| Ok(LiteralMuscle::at_rest(path.into(), STABLE_STEPS)), tick)
+}
+
+/// What steps a controller.
+type Control<S> =
+    fn(&FesController<S, 2>, &mut FesControllerState<S>, Target<S>, Sensors<S>) -> FesCommand<S>;
+
+/// Drives the controller of an elbow with all that it can do: paths, in m, are taken as angles to
+/// be reached, pps as angles measured, and activations as motion.
+fn controller<S: Scalar>(case: u32, step: Control<S>) -> Result<(), JointError> {
+    let electrode =
+        RecruitmentCurveParams { threshold: 6e-3, saturation: 18e-3, chronaxie: 2e-4, slope: 2.0 };
+    let params = FesControllerParams {
+        range: ELBOW.range,
+        muscles: ELBOW.muscles.map(|muscle| muscle.params()),
+        paths: ELBOW.muscles.map(|muscle| muscle.path()),
+        limb: LimbParams { inertia: 0.07, damping: 0.3, gravity: 2.5, hanging_angle: 0.0 },
+        electrodes: [electrode; 2],
+        modulation: [Modulation::Width { amplitude: 0.03 }, Modulation::Amplitude { width: 3e-4 }],
+        stimulation_frequency: 40.0,
+        cocontraction: 0.3,
+        measured: Measured::Angle,
+        feedback: PiParams {
+            proportional: 6.0,
+            integral: 4.0,
+            derivative: 0.6,
+            derivative_filter: 0.02,
+            most: 10.0,
+        },
+        expected_lag: 0.1,
+        lead_filter_time: 0.025,
+        fatigue: [Some(FatigueParams::QUADRICEPS); 2],
+        least_fitness: 0.3,
+        gain: Some(GainParams { time: 5.0, least: 0.3, most: 2.0, excitation: 0.3 }),
+        torque: (-20.0, 20.0),
+    };
+    let controller = FesController::<S, 2>::build(&params, TimeStep::MILLISECOND)?;
+    let of = |value: f32| S::from_f64(value.into());
+    let driven = drive(
+        case,
+        |path| Ok(controller.start(of(10.0 * path))),
+        |state, input| {
+            let motion = 5.0 * input.activation - 3.0;
+            let target = Target {
+                angle: of(10.0 * input.path_length),
+                velocity: of(motion),
+                acceleration: of(10.0 * motion),
+                torque: S::quantity(0.0),
+            };
+            let angle = of(input.stimulation_frequency / 25.0);
+            let sensors = Sensors { angle, torque: S::quantity(0.0) };
+            step(black_box(&controller), state, black_box(target), black_box(sensors))
+        },
+    );
+    driven.map_err(|error| JointError { muscle: None, error })
 }
 
 #[entry]

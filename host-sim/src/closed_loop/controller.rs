@@ -13,11 +13,11 @@ use vm_nostd::{FatigueParams, Fixed, RecruitmentCurve, Scalar, TimeStep};
 pub const AMPLITUDE: f64 = 0.03;
 pub const GREATEST_WIDTH: f64 = 5e-4;
 
-/// Filter time of the model's lead, s: about a pulse's interval.
-const FILTER_TIME: f64 = 0.025;
-
 /// Filter time of derivatives, s.
 const DERIVATIVE_FILTER: f64 = 0.02;
+
+/// Time constant of the gain's estimate, s: many movements.
+const GAIN_TIME: f64 = 5.0;
 
 /// Less co-contraction than this, of the weight's torque, is none.
 const NO_COCONTRACTION: f64 = 0.03;
@@ -63,12 +63,13 @@ impl Kind {
 
     /// Ranges of what is tuned, on a logarithmic scale: gains per rad, per rad and s, and s/rad, of
     /// full stimulation or, of the model, of the weight's torque; of the model also the expected
-    /// lag (s), the time of the gain's estimate (s) and co-contraction (of the weight's torque).
+    /// lag (s), co-contraction (of the weight's torque), and the filter time of the lead (s), from a
+    /// pulse's interval up.
     pub fn ranges(self) -> &'static [(f64, f64)] {
         const PI: [(f64, f64); 2] = [(0.01, 10.0), (0.01, 10.0)];
-        const PID: [(f64, f64); 3] = [(0.05, 5.0), (0.05, 5.0), (0.01, 1.0)];
+        const PID: [(f64, f64); 3] = [(0.01, 10.0), (0.01, 10.0), (0.003, 1.0)];
         const MODEL: [(f64, f64); 6] =
-            [(0.3, 20.0), (0.2, 20.0), (0.05, 2.0), (0.05, 0.2), (0.5, 20.0), (0.001, 0.4)];
+            [(0.03, 10.0), (0.03, 10.0), (0.01, 1.0), (0.05, 0.2), (0.001, 0.4), (0.025, 0.1)];
         match self {
             Self::Pi | Self::PiCurve => &PI,
             Self::PidCurve => &PID,
@@ -164,7 +165,8 @@ impl<S: Scalar> Modelled<S> {
         let preset = task.joint();
         let limb = task.limb();
         let weight = limb.gravity + 5.0 * limb.inertia;
-        let [proportional, integral, derivative, expected_lag, time, cocontraction] = settings[..]
+        let [proportional, integral, derivative, expected_lag, cocontraction, lead_filter_time] =
+            settings[..]
         else {
             unreachable!("six settings")
         };
@@ -193,11 +195,11 @@ impl<S: Scalar> Modelled<S> {
                     most: 8.0 * weight,
                 },
                 expected_lag,
-                lead_filter_time: FILTER_TIME,
+                lead_filter_time,
                 fatigue: [Some(FatigueParams::QUADRICEPS); 2],
                 least_fitness: 0.3,
                 gain: Some(GainParams {
-                    time,
+                    time: GAIN_TIME,
                     least: 0.3,
                     most: 2.0,
                     excitation: (0.1 * weight).max(0.01),

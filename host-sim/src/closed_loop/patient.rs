@@ -62,9 +62,10 @@ pub struct Patient {
 }
 
 impl Patient {
-    /// The patient of a number among those that are scored.
+    /// The patient of a number among those that are scored: drawn after the last change of tasks,
+    /// controllers and ranges, none of which has seen them.
     pub fn scored(task: Task, number: u64) -> Self {
-        Self::draw(task, 1, number)
+        Self::draw(task, 5, number)
     }
 
     /// The patient of a number among those that controllers are tuned on.

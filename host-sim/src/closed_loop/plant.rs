@@ -39,6 +39,8 @@ struct Pull {
     cosine: f64,
     /// Fascicles, L_ce0.
     length: f64,
+    /// The last pulse (A, s) and what it recruits.
+    stimulus: ((f64, f64), f64),
 }
 
 /// The plant.
@@ -82,6 +84,7 @@ impl Plant {
                 sine: patient.pennation[i].sin(),
                 cosine: patient.pennation[i].cos(),
                 length: 1.0,
+                stimulus: ((0.0, 0.0), patient.electrodes[i].recruited(0.0, 0.0)),
             };
             // Without a jump in the first tick: the fascicles of the path that they will be given.
             for _ in 0..20 {
@@ -111,7 +114,13 @@ impl Plant {
         let mut driven =
             [(Input { activation: 0.0, path_length: 0.0, stimulation_frequency: 0.0 }, 0.0); 2];
         for (i, pull) in self.pulls.iter_mut().enumerate() {
-            let activation = self.patient.electrodes[i].recruited(pulses[i].0, pulses[i].1);
+            // It costs two powers, and pulses last for many ticks.
+            if pull.stimulus.0 != pulses[i] {
+                let (amplitude, width) = pulses[i];
+                let recruited = self.patient.electrodes[i].recruited(amplitude, width);
+                pull.stimulus = (pulses[i], recruited);
+            }
+            let activation = pull.stimulus.1;
             let input = Input {
                 activation,
                 path_length: pull.in_line(self.angle),

@@ -54,6 +54,40 @@ pub struct Row {
     pub settings: Settings,
 }
 
+/// Headings of [`Row::cells`].
+pub const COLUMNS: [&str; 11] = [
+    "task",
+    "controller",
+    "arithmetic",
+    "patients",
+    "rms, deg (median)",
+    "rms, deg (p95)",
+    "overshoot, deg (p95)",
+    "charge, uC (median)",
+    "endured, s (p5)",
+    "unstable",
+    "limit broken",
+];
+
+impl Row {
+    /// What tables show.
+    pub fn cells(&self) -> [String; 11] {
+        [
+            self.task.to_owned(),
+            self.controller.to_owned(),
+            self.arithmetic.to_owned(),
+            self.patients.to_string(),
+            format!("{:.2}", self.rms_median),
+            format!("{:.2}", self.rms_p95),
+            format!("{:.1}", self.overshoot_p95),
+            format!("{:.0}", self.charge_median_uc),
+            format!("{:.0}", self.endured_p5_s),
+            self.unstable.to_string(),
+            self.limit_broken.to_string(),
+        ]
+    }
+}
+
 /// Why there is no comparison.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {

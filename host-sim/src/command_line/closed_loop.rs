@@ -1,11 +1,12 @@
 //! `vm loop`: controllers of stimulation in closed loop, on patients that differ from the model.
 
 use super::print;
-use crate::chart::{Chart, Line, Panel};
-use crate::closed_loop::{self, Instant, Kind, Patient, Row, Study, Task, Trial};
+use crate::closed_loop::{self, Row, Study, Task};
+use crate::markdown_table::markdown_table;
+use crate::readme;
 use crate::trace::write_atomically;
 use clap::Args;
-use comfy_table::{Table, presets};
+use comfy_table::Table;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -26,6 +27,10 @@ pub struct LoopArgs {
     /// Prints the table as JSON.
     #[arg(long)]
     json: bool,
+    /// Write the rows of these tasks into host-sim/docs/loop.md of the checkout that this program
+    /// was built in; those of other tasks stay.
+    #[arg(long)]
+    write: bool,
     /// Draws the first patient's run of the first task under every controller, in SVG.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -45,8 +50,12 @@ pub fn run(args: &LoopArgs) -> Result<(), Box<dyn Error>> {
     };
     let rows = closed_loop::run(&study)?;
     if let Some(path) = &args.svg {
-        let svg = drawn(study.tasks[0], &rows)?;
+        let svg = closed_loop::picture(study.tasks[0], &rows)?;
         write_atomically(path, svg.as_bytes())?;
+    }
+    if args.write {
+        let kept = readme::LOOP.text()?;
+        readme::LOOP.write(&readme::closed_loop(&kept, &study, &rows))?;
     }
     if args.json {
         print(&serde_json::to_string_pretty(&rows)?)?;
@@ -57,63 +66,12 @@ pub fn run(args: &LoopArgs) -> Result<(), Box<dyn Error>> {
 }
 
 fn table(rows: &[Row]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "task",
-        "controller",
-        "arithmetic",
-        "patients",
-        "rms, deg (median)",
-        "rms, deg (p95)",
-        "overshoot, deg (p95)",
-        "charge, uC (median)",
-        "endured, s (p5)",
-        "unstable",
-        "limit broken",
-        "settings",
-    ]);
+    let mut header: Vec<&str> = closed_loop::COLUMNS.to_vec();
+    header.push("settings");
+    let mut table = markdown_table(&header, 3..closed_loop::COLUMNS.len());
     for row in rows {
         let settings: Vec<String> = row.settings.iter().map(|x| format!("{x:.3}")).collect();
-        table.add_row([
-            row.task.to_owned(),
-            row.controller.to_owned(),
-            row.arithmetic.to_owned(),
-            row.patients.to_string(),
-            format!("{:.2}", row.rms_median),
-            format!("{:.2}", row.rms_p95),
-            format!("{:.1}", row.overshoot_p95),
-            format!("{:.0}", row.charge_median_uc),
-            format!("{:.0}", row.endured_p5_s),
-            row.unstable.to_string(),
-            row.limit_broken.to_string(),
-            settings.join(" "),
-        ]);
+        table.add_row(row.cells().into_iter().chain([settings.join(" ")]));
     }
     table
-}
-
-/// The first patient's runs of a task, with the settings of the rows.
-fn drawn(task: Task, rows: &[Row]) -> Result<String, Box<dyn Error>> {
-    let patient = Patient::scored(task, 0);
-    let (mut angles, mut widths) = (Vec::new(), Vec::new());
-    for (kind, row) in Kind::ALL.into_iter().zip(rows).take(4) {
-        let mut instants: Vec<Instant> = Vec::new();
-        let trial = Trial { task, patient: &patient, kind, settings: &row.settings, tuning: false };
-        trial.run(|instant| instants.push(instant))?;
-        let of = |value: fn(&Instant) -> f64| {
-            instants.iter().map(|instant| (instant.time, value(instant))).collect::<Vec<_>>()
-        };
-        if angles.is_empty() {
-            angles.push(Line::new("target", of(|instant| instant.target.to_degrees())));
-        }
-        angles.push(Line::new(kind.name(), of(|instant| instant.angle.to_degrees())));
-        // Extensors' pulses are drawn downwards.
-        widths.push(Line::new(
-            kind.name(),
-            of(|instant| (instant.widths[0] - instant.widths[1]) * 1e6),
-        ));
-    }
-    let panels = vec![Panel::new("angle (deg)", angles), Panel::new("pulse width (us)", widths)];
-    Ok(Chart { title: task.name(), x: "time (s)", panels }.draw())
 }

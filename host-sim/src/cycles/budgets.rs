@@ -19,7 +19,7 @@ pub(super) struct Budgets {
     maximum_over_mean: f64,
     /// Lower limit of the literal port's cycles over the model's, both in `f32`.
     literal_over_model: f64,
-    /// By core and case of the model.
+    /// By core and case of the model or the controller.
     core: BTreeMap<Core, BTreeMap<String, Budget>>,
 }
 
@@ -33,8 +33,8 @@ struct Budget {
     state_bytes: u32,
     /// Bytes of code.
     code_bytes: u32,
-    /// Bytes of code and tables of both modes.
-    both_modes_bytes: u32,
+    /// Bytes of code and tables of both modes; of the model only.
+    both_modes_bytes: Option<u32>,
     /// Bytes of stack.
     stack_bytes: u32,
 }
@@ -54,8 +54,13 @@ impl Budgets {
     pub fn hold(&self, case: &Case, row: &mut Row) {
         let budget = self.core.get(&row.target).and_then(|cases| cases.get(case.name));
         let problems = match (case.subject, budget) {
-            (Subject::Model(..), Some(budget)) => self.problems_of_model(row, budget),
-            (Subject::Model(..), None) => vec!["no budget".to_owned()],
+            (Subject::Model(..), Some(budget)) => {
+                let mut problems = problems(row, budget);
+                problems.extend(self.uneven(row));
+                problems
+            }
+            (Subject::Controller(_), Some(budget)) => problems(row, budget),
+            (Subject::Model(..) | Subject::Controller(_), None) => vec!["no budget".to_owned()],
             (Subject::Literal(_, Arithmetic::F32), _) => self.problems_of_literal(row),
             _ => Vec::new(),
         };
@@ -64,45 +69,12 @@ impl Budgets {
         row.problem = problems.join("; ");
     }
 
-    fn problems_of_model(&self, row: &Row, budget: &Budget) -> Vec<String> {
-        let cycles = (row.cycles_pess_max as f64 * MARGIN).ceil() as u64;
-        let used = [
-            ("cycles", cycles, budget.cycles),
-            ("state_bytes", row.state_bytes.into(), budget.state_bytes.into()),
-            ("code_bytes", row.code_bytes.into(), budget.code_bytes.into()),
-            (
-                "both_modes_bytes",
-                row.both_modes_bytes.map_or(u64::MAX, u64::from),
-                budget.both_modes_bytes.into(),
-            ),
-            ("stack_bytes", row.stack_bytes.into(), budget.stack_bytes.into()),
-        ];
-        let mut problems: Vec<String> = used
-            .into_iter()
-            .filter_map(|(what, used, budget)| {
-                if used > budget {
-                    Some(format!("{what} {used} > budget {budget}"))
-                } else if (used as f64) < USED * budget as f64 {
-                    Some(format!("{what} {used} leaves a stale budget of {budget}"))
-                } else {
-                    None
-                }
-            })
-            .collect();
+    /// The most expensive tick of the model against the mean.
+    fn uneven(&self, row: &Row) -> Option<String> {
         let (spread, most) = (row.maximum_over_mean(), self.maximum_over_mean);
         // NaN fails every comparison, so it is never within the limit.
         let within = spread <= most;
-        if !within {
-            problems.push(format!("maximum over mean {spread:.3} > {most}"));
-        }
-        for (what, parts) in [("files", &row.files), ("classes", &row.classes)] {
-            let (sum, mean) = (Share::all(parts).cycles, row.cycles_typ_mean);
-            let adds_up = (sum - mean).abs() < 0.5;
-            if !adds_up {
-                problems.push(format!("{what} add up to {sum:.0} of {mean:.0} cycles"));
-            }
-        }
-        problems
+        (!within).then(|| format!("maximum over mean {spread:.3} > {most}"))
     }
 
     fn problems_of_literal(&self, row: &Row) -> Vec<String> {
@@ -118,6 +90,42 @@ impl Budgets {
     }
 }
 
+/// What of a row is beyond its budget or leaves it stale.
+fn problems(row: &Row, budget: &Budget) -> Vec<String> {
+    let cycles = (row.cycles_pess_max as f64 * MARGIN).ceil() as u64;
+    let both_modes = budget.both_modes_bytes.map(|budget| {
+        let used = row.both_modes_bytes.map_or(u64::MAX, u64::from);
+        ("both_modes_bytes", used, budget.into())
+    });
+    let used = [
+        ("cycles", cycles, budget.cycles),
+        ("state_bytes", row.state_bytes.into(), budget.state_bytes.into()),
+        ("code_bytes", row.code_bytes.into(), budget.code_bytes.into()),
+        ("stack_bytes", row.stack_bytes.into(), budget.stack_bytes.into()),
+    ];
+    let mut problems: Vec<String> = used
+        .into_iter()
+        .chain(both_modes)
+        .filter_map(|(what, used, budget)| {
+            if used > budget {
+                Some(format!("{what} {used} > budget {budget}"))
+            } else if (used as f64) < USED * budget as f64 {
+                Some(format!("{what} {used} leaves a stale budget of {budget}"))
+            } else {
+                None
+            }
+        })
+        .collect();
+    for (what, parts) in [("files", &row.files), ("classes", &row.classes)] {
+        let (sum, mean) = (Share::all(parts).cycles, row.cycles_typ_mean);
+        let adds_up = (sum - mean).abs() < 0.5;
+        if !adds_up {
+            problems.push(format!("{what} add up to {sum:.0} of {mean:.0} cycles"));
+        }
+    }
+    problems
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::case::CASES;
@@ -129,7 +137,7 @@ mod tests {
             cycles: 1050,
             state_bytes: CASES[0].state_bytes(),
             code_bytes: 5000,
-            both_modes_bytes: 9000,
+            both_modes_bytes: Some(9000),
             stack_bytes: 200,
         };
         let cases = [(CASES[0].name.to_owned(), budget)].into();
@@ -158,7 +166,11 @@ mod tests {
         assert_eq!(with(|b| b.cycles = 1313), "cycles 1050 leaves a stale budget of 1313");
         assert_eq!(with(|b| b.stack_bytes = 199), "stack_bytes 200 > budget 199");
         assert_eq!(with(|b| b.code_bytes = 6300), "code_bytes 5000 leaves a stale budget of 6300");
-        assert_eq!(with(|b| b.both_modes_bytes = 8999), "both_modes_bytes 9000 > budget 8999");
+        assert_eq!(with(|b| b.both_modes_bytes = None), "");
+        assert_eq!(
+            with(|b| b.both_modes_bytes = Some(8999)),
+            "both_modes_bytes 9000 > budget 8999"
+        );
         let state_bytes = CASES[0].state_bytes();
         let (less, exceeded) = (state_bytes - 1, with(|b| b.state_bytes -= 1));
         assert_eq!(exceeded, format!("state_bytes {state_bytes} > budget {less}"));
@@ -187,13 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn every_case_of_the_model_has_a_budget() {
+    fn every_case_of_the_model_and_the_controller_has_a_budget() {
         let budgets = Budgets::read().expect("budgets");
         for core in Core::ALL {
             let names: Vec<&str> = budgets.core[&core].keys().map(String::as_str).collect();
             let cases = cases_on(core);
             let mut expected: Vec<&str> =
-                cases.iter().filter(|case| case.is_model()).map(|case| case.name).collect();
+                cases.iter().filter(|case| case.has_budget()).map(|case| case.name).collect();
             expected.sort_unstable();
             assert_eq!(names, expected, "{}", core.name());
         }

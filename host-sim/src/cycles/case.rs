@@ -7,7 +7,8 @@ use crate::reference::Mode;
 use crate::scenario::{self, Scenario, paper_muscle};
 use literal_port::{Drive, LiteralMuscle, Real, STABLE_STEPS};
 use rayon::prelude::*;
-use vm_nostd::{EffectiveLength, FascicleLength, NaturalContinuous, NaturalDiscrete, State};
+use vm_nostd::control::FesControllerState;
+use vm_nostd::{EffectiveLength, FascicleLength, Fixed, NaturalContinuous, NaturalDiscrete, State};
 
 /// What a case computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +23,19 @@ pub enum Subject {
     EffectiveLength(usize),
     /// The libm calls of one evaluation of the equations.
     Kernels,
+    /// A tick of the FES controller of an elbow: two muscles of two types, fatigue, gain estimate.
+    Controller(Arithmetic),
+}
+
+/// What a case is measured on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measured {
+    /// All ticks of all scenarios.
+    All,
+    /// So many ticks of [`BASELINE_SCENARIO`].
+    Excerpt(usize),
+    /// The adversarial inputs, as targets and sensors.
+    Adversarial,
 }
 
 /// State size in bytes for a type of acting length and a number of motor units of each of two
@@ -44,31 +58,32 @@ pub struct Case {
     pub function: &'static str,
     /// Computation that is measured.
     pub subject: Subject,
-    /// Number of measured ticks of [`BASELINE_SCENARIO`]; `None`: all ticks of all scenarios.
-    pub ticks: Option<usize>,
+    /// Its inputs.
+    pub measured: Measured,
 }
 
 /// Every case, in the order of the bench.
-pub const CASES: [Case; 19] = {
+pub const CASES: [Case; 21] = {
     use Arithmetic::{F32, F64, Fixed};
+    use Measured::{Adversarial, All, Excerpt};
     use Mode::{Continuous, Fes};
-    use Subject::{Discrete, EffectiveLength, Kernels, Literal, Model};
+    use Subject::{Controller, Discrete, EffectiveLength, Kernels, Literal, Model};
     const fn case(
         name: &'static str,
         function: &'static str,
         subject: Subject,
-        ticks: Option<usize>,
+        measured: Measured,
     ) -> Case {
-        Case { name, function, subject, ticks }
+        Case { name, function, subject, measured }
     }
     // A baseline costs nearly the same on every tick, so an excerpt suffices.
-    let (some, few) = (Some(500), Some(20));
-    let figure = Some(100);
+    let (some, few) = (Excerpt(500), Excerpt(20));
+    let figure = Excerpt(100);
     [
-        case("continuous-f32", "step_continuous_f32", Model(Continuous, F32), None),
-        case("fes-f32", "step_fes_f32", Model(Fes, F32), None),
-        case("continuous-fixed", "step_continuous_fixed", Model(Continuous, Fixed), None),
-        case("fes-fixed", "step_fes_fixed", Model(Fes, Fixed), None),
+        case("continuous-f32", "step_continuous_f32", Model(Continuous, F32), All),
+        case("fes-f32", "step_fes_f32", Model(Fes, F32), All),
+        case("continuous-fixed", "step_continuous_fixed", Model(Continuous, Fixed), All),
+        case("fes-fixed", "step_fes_fixed", Model(Fes, Fixed), All),
         case("literal-continuous-f32", "literal_continuous_f32", Literal(Continuous, F32), some),
         case("literal-fes-f32", "literal_fes_f32", Literal(Fes, F32), some),
         case("literal-continuous-f64", "literal_continuous_f64", Literal(Continuous, F64), few),
@@ -84,6 +99,8 @@ pub const CASES: [Case; 19] = {
         case("leff-6+6-f32", "step_leff_12_f32", EffectiveLength(6), figure),
         case("leff-15+15-f32", "step_leff_30_f32", EffectiveLength(15), figure),
         case("leff-30+30-f32", "step_leff_60_f32", EffectiveLength(30), figure),
+        case("controller-f32", "step_controller_f32", Controller(F32), Adversarial),
+        case("controller-fixed", "step_controller_fixed", Controller(Fixed), Adversarial),
     ]
 };
 
@@ -102,23 +119,33 @@ impl Case {
     pub fn mode(&self) -> Option<Mode> {
         match self.subject {
             Subject::Model(mode, _) | Subject::Literal(mode, _) => Some(mode),
-            Subject::Kernels | Subject::Discrete(_) | Subject::EffectiveLength(_) => None,
+            Subject::Kernels
+            | Subject::Discrete(_)
+            | Subject::EffectiveLength(_)
+            | Subject::Controller(_) => None,
         }
     }
 
     /// Arithmetic.
     pub fn arithmetic(&self) -> Arithmetic {
         match self.subject {
-            Subject::Model(_, arithmetic) | Subject::Literal(_, arithmetic) => arithmetic,
+            Subject::Model(_, arithmetic)
+            | Subject::Literal(_, arithmetic)
+            | Subject::Controller(arithmetic) => arithmetic,
             Subject::Kernels | Subject::Discrete(_) | Subject::EffectiveLength(_) => {
                 Arithmetic::F32
             }
         }
     }
 
-    /// Whether it is the model, which has a budget.
+    /// Whether it is the model.
     pub fn is_model(&self) -> bool {
         matches!(self.subject, Subject::Model(..))
+    }
+
+    /// Whether it has a budget on every core that it is measured on.
+    pub fn has_budget(&self) -> bool {
+        matches!(self.subject, Subject::Model(..) | Subject::Controller(_))
     }
 
     /// Whether it is listed in `docs/cycles.md`; the others serve figure 7 only.
@@ -138,6 +165,8 @@ impl Case {
     pub fn state_bytes(&self) -> u32 {
         let bytes = match (self.subject, self.arithmetic()) {
             (Subject::Kernels, _) => 0,
+            (Subject::Controller(_), Arithmetic::Fixed) => size_of::<FesControllerState<Fixed>>(),
+            (Subject::Controller(_), _) => size_of::<FesControllerState<f32>>(),
             (Subject::Discrete(units), _) => {
                 bytes_of_units!(FascicleLength, units, 1 => 2, 3 => 6, 6 => 12, 15 => 30, 30 => 60)
             }
@@ -146,7 +175,7 @@ impl Case {
             }
             (Subject::Model(..), Arithmetic::F64) => size_of::<State<f64, NaturalContinuous, 2>>(),
             (Subject::Model(..), Arithmetic::Fixed) => {
-                size_of::<State<vm_nostd::Fixed, NaturalContinuous, 2>>()
+                size_of::<State<Fixed, NaturalContinuous, 2>>()
             }
             (Subject::Model(..), _) => size_of::<State<f32, NaturalContinuous, 2>>(),
             (Subject::Literal(..), Arithmetic::F64) => size_of::<LiteralMuscle<f64>>(),
@@ -223,19 +252,23 @@ const BASELINE_SCENARIO: &str = "length_10hz";
 /// All runs of the bench, in order of execution.
 pub fn runs() -> Vec<Run> {
     let scenarios = scenarios();
-    let all = CASES.iter().filter(|case| case.ticks.is_none());
-    let mask = all.fold(0, |mask, case| mask | case.bit());
+    let mask_of = |wanted: fn(Measured) -> bool| {
+        CASES.iter().filter(|case| wanted(case.measured)).fold(0, |mask, case| mask | case.bit())
+    };
+    let all = mask_of(|measured| measured == Measured::All);
+    let adversarial = mask_of(|measured| !matches!(measured, Measured::Excerpt(_)));
     let baseline = scenarios.iter().find(|scenario| scenario.name == BASELINE_SCENARIO).cloned();
     let excerpts = CASES.iter().filter_map(|case| {
+        let Measured::Excerpt(ticks) = case.measured else { return None };
         let mut scenario = baseline.clone()?;
-        scenario.trace.inputs.truncate(case.ticks? + 1);
+        scenario.trace.inputs.truncate(ticks + 1);
         Some(Run { scenario, mask: case.bit() })
     });
     let excerpts: Vec<Run> = excerpts.collect();
     scenarios
         .into_iter()
-        .chain([adversarial::scenario()])
-        .map(|scenario| Run { scenario, mask })
+        .map(|scenario| Run { scenario, mask: all })
+        .chain([Run { scenario: adversarial::scenario(), mask: adversarial }])
         .chain(excerpts)
         .collect()
 }
@@ -305,9 +338,10 @@ mod tests {
             let runs = runs();
             let of_case = runs.iter().filter(|run| run.mask & case.bit() != 0);
             let ticks: usize = of_case.map(Run::ticks).sum();
-            match case.ticks {
-                None => assert!(ticks >= 10_000, "{}: {ticks}", case.name),
-                Some(some) => assert_eq!(ticks, some, "{}", case.name),
+            match case.measured {
+                Measured::All => assert!(ticks >= 10_000, "{}: {ticks}", case.name),
+                Measured::Excerpt(some) => assert_eq!(ticks, some, "{}", case.name),
+                Measured::Adversarial => assert_eq!(ticks, 6_000, "{}", case.name),
             }
         }
     }

@@ -41,10 +41,10 @@ pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
     Ok(Case::named(case).map(Case::state_bytes).zip(most))
 }
 
-/// The cases measured on a core: all on the M4F, the model in fixed point on the others.
+/// The cases measured on a core: all on the M4F, model and controller in fixed point on the others.
 pub(super) fn cases_on(core: Core) -> Vec<Case> {
     let wanted = |case: &&Case| {
-        core == Core::CortexM4F || case.is_model() && case.arithmetic() == Arithmetic::Fixed
+        core == Core::CortexM4F || case.has_budget() && case.arithmetic() == Arithmetic::Fixed
     };
     CASES.iter().filter(wanted).copied().collect()
 }
@@ -66,11 +66,13 @@ pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportEr
             rows.push(row(core, class, case, followed, error));
         }
         for (index, case) in cases.iter().enumerate() {
+            if case.has_budget() {
+                (rows[index].files, rows[index].classes) = shares(&image, &followed[index])?;
+            }
             if case.is_model() {
                 let bytes = both_modes_bytes(&image, case, &cases, &followed);
                 rows[index].both_modes_bytes = Some(bytes);
-                (rows[index].files, rows[index].classes) = shares(&image, &followed[index])?;
-            } else {
+            } else if !case.has_budget() {
                 rows[index].ratio = cycles_of_model(&rows, case.mode())
                     .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
             }

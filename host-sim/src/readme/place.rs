@@ -64,6 +64,12 @@ pub const SCOREBOARD: Place = Place {
     ]),
 };
 
+/// Controllers in closed loop.
+pub const LOOP: Place = Place {
+    file: "host-sim/docs/loop.md",
+    markers: Some(["<!-- loop: cargo vm loop --write -->", "<!-- end of loop -->"]),
+};
+
 /// Why a document could not be compared or written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeError {

@@ -7,8 +7,8 @@ use vm_nostd::control::{
     Sensors, SteadyNatural, Target,
 };
 use vm_nostd::{
-    ContinuousMuscle, Fatigue, FatigueParams, FesMuscle, Fixed, Input, RecruitmentCurve,
-    RecruitmentCurveParams, RestoreError, Scalar, Status, TimeStep,
+    ContinuousMuscle, Fatigue, FatigueParams, FesMuscle, Fixed, Input, MuscleParams,
+    RecruitmentCurve, RecruitmentCurveParams, RestoreError, Scalar, Status, TimeStep,
 };
 
 const STEP: TimeStep = TimeStep::MILLISECOND;
@@ -267,6 +267,30 @@ fn the_inverse_makes_the_torque_and_makes_up_for_fatigue() {
         makes_the_torque::<f32>(1.0, seconds);
         makes_the_torque::<Fixed>(1.0, seconds);
     }
+}
+
+/// Fatigue is made up for in the feed-forward alone: feedback asks the same of tired muscles, so
+/// that a patient who tires less than the model says does not oscillate.
+#[test]
+fn fatigue_leaves_the_gain_of_the_loop() {
+    let after_40_s = |fatigue| {
+        let params = FesControllerParams {
+            limb: LimbParams { gravity: 0.0, ..params().limb },
+            cocontraction: 0.0,
+            feedback: PiParams { proportional: 60.0, ..params().feedback },
+            muscles: params().muscles.map(|m| MuscleParams { mass: 0.1 * m.mass, ..m }),
+            gain: None,
+            fatigue,
+            ..params()
+        };
+        let controller = FesController::<f32, 2>::build(&params, STEP).expect("a controller");
+        let mut state = controller.start(0.7);
+        let step = |_| controller.step(&mut state, still(0.5), sensed(0.7)).activations;
+        (0..40_000).map(step).last().expect("a command")
+    };
+    let [untired, tired] = [None, Some(FatigueParams::QUADRICEPS)].map(|f| after_40_s([f; 2]));
+    assert_eq!(untired, tired);
+    assert!(tired[1] > 0.1, "{tired:?}");
 }
 
 #[test]

@@ -300,7 +300,8 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         status.set(ControlStatus::TORQUE_LIMITED, limited);
 
         let posture = self.joint.posture([state.angle]);
-        let shares = self.cocontraction.shares(torque);
+        let shares = self.cocontraction.shares(torque).torques;
+        let forward = self.cocontraction.shares(forward).torques;
         let mut activations = [S::ZERO; 2];
         let mut pulses = [self.pulse(0, S::ZERO).0; 2];
         let mut muscles = [Status::empty(); 2];
@@ -309,7 +310,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             let place = (&self.joint, &posture, i);
             let inverse = &mut state.inverses[i];
             let stimulated =
-                self.inverses[i].step(inverse, place, shares.torques[i], self.frequency);
+                self.inverses[i].step(inverse, place, shares[i], forward[i], self.frequency);
             activations[i] = stimulated.activation;
             muscles[i] = stimulated.status;
             at_most[i] = stimulated.at_most;
