@@ -10,6 +10,9 @@ int platform_end(int failed);
 
 /* The line of the first misuse that was not refused; 0 if all were. */
 int misuse(void);
+/* The same of joints and controllers; and what they compute, written. */
+int control(void);
+int play_control(void);
 
 #define CHECK(condition) do { if (!(condition)) return __LINE__; } while (0)
 

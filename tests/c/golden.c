@@ -1,5 +1,5 @@
-/* Both arithmetics and both modes, played the inputs that the test has written; the bits of every tick go out as
-   little-endian words. Before that, everything that can be misused is. */
+/* Both arithmetics and both modes, played the inputs that the test has written, and the controllers; the bits of every
+   tick go out as little-endian words. Before that, everything that can be misused is. */
 
 #include "check.h"
 #include "inputs.h"
@@ -37,9 +37,11 @@ static int play_fixed(uint32_t mode) {
 
 int main(void) {
     int line = misuse();
+    if (line == 0) line = control();
     for (uint32_t mode = VM_MODE_CONTINUOUS; line == 0 && mode <= VM_MODE_FES; mode++) {
         line = play_f32(mode);
         if (line == 0) line = play_fixed(mode);
     }
+    if (line == 0) line = play_control();
     return platform_end(line);
 }

@@ -16,7 +16,7 @@
 #define INPUT {0.5f, 0.16f, 20.0f}
 #define BEYOND {1.5f, 0.16f, 20.0f}
 #define STATE_WORDS VM_F32_STATE_WORDS
-#define OTHER_CHECKSUMS vm_fixed_checksums
+#define OTHER(name) vm_fixed_##name
 #include "misuse_rows.h"
 #undef A
 #undef F
@@ -31,7 +31,7 @@
 #undef INPUT
 #undef BEYOND
 #undef STATE_WORDS
-#undef OTHER_CHECKSUMS
+#undef OTHER
 
 #define A(name) name##_fixed
 #define F(name) vm_fixed_##name
@@ -46,7 +46,7 @@
 #define INPUT {160000, 500, 200}
 #define BEYOND {160000, 1500, 200}
 #define STATE_WORDS VM_FIXED_STATE_WORDS
-#define OTHER_CHECKSUMS vm_f32_checksums
+#define OTHER(name) vm_f32_##name
 #include "misuse_rows.h"
 
 /* Fields of doubles. */

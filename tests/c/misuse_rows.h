@@ -137,7 +137,7 @@ static int A(misuse)(void) {
         REFUSED(NULL_POINTER, F(element_curves)(muscle, NUMBER, PATH, 0));
     }
     /* Functions of another arithmetic. */
-    REFUSED(NOT_BUILT, OTHER_CHECKSUMS((void *)muscle, &coefficients, &state));
+    REFUSED(NOT_BUILT, OTHER(checksums)((void *)muscle, &coefficients, &state));
     /* What a muscle cannot be in leaves it as it was. */
     REFUSED(OK, F(checksums)(muscle, &coefficients, &state));
     REFUSED(PARAMETER, F(rest)(muscle, FAR));
@@ -204,6 +204,8 @@ static int A(misuse)(void) {
         CHECK(fitness == rested);
         REFUSED(OTHER_MUSCLE, F(fatigue_restore)(&fatigue, words, 40));
         REFUSED(SIZE, F(fatigue_restore)(&fatigue, other_words, 1));
+        REFUSED(NOT_BUILT, OTHER(fatigue_save)((void *)&fatigue, other_words, 40));
+        REFUSED(NOT_BUILT, F(checksums)((void *)&fatigue, &coefficients, &state));
     }
     /* Recruitment curve and inverse. */
     {
@@ -231,6 +233,8 @@ static int A(misuse)(void) {
         CHECK(flags == VM_PULSE_UNREACHABLE);
         REFUSED(OK, F(curve_checksum)(&curve, &state));
         REFUSED(NULL_POINTER, F(curve_checksum)(&curve, 0));
+        REFUSED(NOT_BUILT, OTHER(curve_checksum)((void *)&curve, &state));
+        REFUSED(NOT_BUILT, F(fatigue_save)((void *)&curve, other_words, 40));
 
         REFUSED(NOT_BUILT, F(steady_force)(&steady, &input, &held));
         REFUSED(SIZE, F(steady_build)(&steady, 8, &params, &error));

@@ -1,5 +1,4 @@
-//! The C library: its header is current, and C programs on host and target compute the same bits as
-//! Rust.
+//! The C library: C programs on host and target compute the same bits as Rust.
 //!
 //! Without a C compiler or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set they fail.
 
@@ -12,84 +11,15 @@ use std::process::{Command, Output};
 use system_tests::skip;
 use vm_nostd::{ContinuousMuscle, FesMuscle, Fixed, Input, Output as Tick, Scalar, TimeStep};
 
+#[path = "c_api/control.rs"]
+mod control;
+#[path = "c_api/header.rs"]
+mod header;
+#[path = "c_api/readme.rs"]
+mod readme;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// A source with the functions of its arithmetic: cbindgen does not expand macros.
-fn expanded(source: &str, functions: &str) -> String {
-    let (own, invocations) = source.split_once("\nfunctions! {\n").expect("an invocation");
-    let mut text = functions.to_owned();
-    let pairs = invocations.lines().filter_map(|line| {
-        let (key, value) = line.trim().strip_suffix(',')?.split_once(" = ")?;
-        Some((format!("${key}"), value.to_owned()))
-    });
-    // Longer keys first: `$step` is the start of another.
-    let mut pairs: Vec<(String, String)> = pairs.collect();
-    pairs.sort_by_key(|(key, _)| std::cmp::Reverse(key.len()));
-    for (key, value) in pairs {
-        text = text.replace(&key, &value);
-    }
-    format!("{own}\n{text}")
-}
-
-/// Assertions of the sizes of all structs.
-fn size_assertions(sizes: &str, header: &str) -> String {
-    let mut text = String::new();
-    let rows = sizes
-        .lines()
-        .filter_map(|line| line.trim().strip_prefix("Vm")?.strip_suffix(',')?.split_once(" = "));
-    for (name, bytes) in rows {
-        writeln!(text, "VM_ASSERT_SIZE(Vm{name}, {bytes});").expect("a string");
-    }
-    for arithmetic in ["F32", "Fixed", "F64"] {
-        for thing in ["Muscle", "Steady", "Fatigue", "Curve"] {
-            let (upper, kind) = (thing.to_uppercase(), arithmetic.to_uppercase());
-            writeln!(text, "VM_ASSERT_SIZE(Vm{thing}{arithmetic}, VM_{upper}_{kind}_SIZE);")
-                .expect("a string");
-        }
-    }
-    let structs = header.matches("typedef struct").count();
-    assert_eq!(text.lines().count(), structs, "the size of every struct is asserted");
-    text
-}
-
-#[test]
-fn the_header_is_current() {
-    let folder = root().join("vm-nostd/c");
-    let source = |name: &str| {
-        std::fs::read_to_string(folder.join(format!("src/{name}.rs"))).expect("a source")
-    };
-    let part = |name: &str| {
-        let text = source(name);
-        let (_, text) = text.split_once("// <functions>").expect("a start");
-        text.split_once("// </functions>").expect("an end").0.to_owned()
-    };
-    let functions = part("functions") + &part("extra_functions");
-    let config =
-        cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
-    let mut builder = cbindgen::Builder::new().with_config(config);
-    for name in ["params", "presets", "derived", "kinds", "units", "result", "status", "extras"] {
-        builder = builder.with_src(folder.join(format!("src/{name}.rs")));
-    }
-    let expansions = tempfile::tempdir().expect("a folder");
-    for name in ["f32", "fixed", "f64"] {
-        let path = expansions.path().join(format!("{name}.rs"));
-        std::fs::write(&path, expanded(&source(name), &functions)).expect("a source");
-        builder = builder.with_src(path);
-    }
-    let bindings = builder.generate().expect("a header");
-    let mut text = Vec::new();
-    bindings.write(&mut text);
-    // C++98 and C90 know no comma before the end of an enum.
-    let mut text = String::from_utf8(text).expect("a text").replace(",\n}", "\n}");
-    text += &size_assertions(&source("sizes"), &text);
-    let header = folder.join("include/vm_nostd.h");
-    if std::env::var_os("VM_WRITE").is_some() {
-        std::fs::write(&header, &text).expect("a header");
-    }
-    let current = std::fs::read_to_string(&header).expect("a header");
-    assert!(current == text, "VM_WRITE=1 cargo test --release -p system-tests --test c_api");
 }
 
 /// Number of rows that the C program steps.
@@ -223,6 +153,7 @@ fn compile(compiler: &str, folder: &Path, platform: &str, arguments: &[&str]) ->
         .arg(folder)
         .arg(sources.join("golden.c"))
         .arg(sources.join("misuse.c"))
+        .arg(sources.join("control.c"))
         .arg(sources.join(platform))
         .args(arguments)
         .arg("-o")
@@ -246,9 +177,10 @@ fn compare(output: &Output) {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "tests/c: {}, {said}", output.status);
     let expected = inputs().bytes();
-    assert_eq!(output.stdout.len(), expected.len());
     assert_eq!(expected.len(), 4 * 20 * (ROWS - 1));
-    let same = output.stdout.chunks(20).zip(expected.chunks(20)).position(|(a, b)| a != b);
+    let (muscles, controllers) = output.stdout.split_at_checked(expected.len()).expect("words");
+    control::compare(controllers);
+    let same = muscles.chunks(20).zip(expected.chunks(20)).position(|(a, b)| a != b);
     assert_eq!(same, None, "the first tick that differs");
     // The rows are not all zeros.
     assert!(expected.chunks(20).filter(|tick| tick[..4] != [0; 4]).count() > ROWS);

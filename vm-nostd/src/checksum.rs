@@ -58,6 +58,7 @@ macro_rules! summed_numbers {
 }
 
 summed_numbers! {
+    bool: |value| value.into();
     u8: |value| value.into();
     u32: |value| value;
     i32: |value| value.cast_unsigned();

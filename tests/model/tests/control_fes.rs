@@ -392,8 +392,9 @@ fn controllers_are_refused_by_name() {
     assert_eq!(refused(|p| p.electrodes[1].slope = 0.0), (Some(1), "slope"));
     assert_eq!(
         refused(|p| p.modulation[1] = Modulation::Width { amplitude: 1.0 }),
-        (None, "modulation.amplitude")
+        (Some(1), "modulation.amplitude")
     );
+    assert_eq!(refused(|p| p.muscles[1].mass = 0.0), (Some(1), "mass"));
 }
 
 fn saved<S: Scalar>() {
@@ -423,6 +424,13 @@ fn saved<S: Scalar>() {
     with_feedback.feedback.integral = 61.0;
     let other = FesController::<S, 2>::build(&with_feedback, STEP).expect("a controller");
     assert!(other.restore(words.iter().copied()).is_err());
+    // What only the inverse knows of a muscle.
+    with_feedback.feedback.integral = 60.0;
+    with_feedback.muscles[1].fibers[0].fiber_type.force_length.width *= 1.01;
+    let other = FesController::<S, 2>::build(&with_feedback, STEP).expect("a controller");
+    assert_ne!(other.checksum(), controller.checksum());
+    let refused = other.restore(words.iter().copied());
+    assert!(matches!(refused, Err(RestoreError::OtherMuscle { .. })), "{refused:?}");
     let mut beyond = words;
     beyond[2] = S::from_f64(2.0).to_bits();
     assert_eq!(controller.restore(beyond), Err(RestoreError::Value { word: 2 }));

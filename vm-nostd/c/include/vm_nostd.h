@@ -26,7 +26,8 @@
  * @endcode
  *
  * Units: f32 and f64 have m, N, pps, mA and us. In fixed point paths are in um, forces in mN, numbers (activation,
- * fitness, lengths in L_ce0) in 2^-24, and pulse amplitudes (mA) and widths (us) in 2^-16.
+ * fitness, lengths in L_ce0, angles in rad, moment arms in m/rad) in 2^-24, and amounts (mA, us, mV, N m, N m/rad) in
+ * 2^-16.
  *
  * VmMuscleF32 has room for two fibre types. For others:
  *
@@ -51,6 +52,12 @@ typedef struct VmSteadyF32 VmSteadyF32;
 typedef struct VmFatigueF32 VmFatigueF32;
 /** A recruitment curve, in float. Opaque. */
 typedef struct VmCurveF32 VmCurveF32;
+/** A joint, in float. Opaque. */
+typedef struct VmJointF32 VmJointF32;
+/** A prosthesis and its state, in float. Opaque. */
+typedef struct VmProsthesisF32 VmProsthesisF32;
+/** An FES controller and its state, in float. Opaque. */
+typedef struct VmFesF32 VmFesF32;
 /** A muscle, in fixed point. Opaque. */
 typedef struct VmMuscleFixed VmMuscleFixed;
 /** The steady state of a muscle, for the inverse, in fixed point. Opaque. */
@@ -59,6 +66,12 @@ typedef struct VmSteadyFixed VmSteadyFixed;
 typedef struct VmFatigueFixed VmFatigueFixed;
 /** A recruitment curve, in fixed point. Opaque. */
 typedef struct VmCurveFixed VmCurveFixed;
+/** A joint, in fixed point. Opaque. */
+typedef struct VmJointFixed VmJointFixed;
+/** A prosthesis and its state, in fixed point. Opaque. */
+typedef struct VmProsthesisFixed VmProsthesisFixed;
+/** An FES controller and its state, in fixed point. Opaque. */
+typedef struct VmFesFixed VmFesFixed;
 /** A muscle, in double. Opaque. */
 typedef struct VmMuscleF64 VmMuscleF64;
 /** The steady state of a muscle, for the inverse, in double. Opaque. */
@@ -67,17 +80,38 @@ typedef struct VmSteadyF64 VmSteadyF64;
 typedef struct VmFatigueF64 VmFatigueF64;
 /** A recruitment curve, in double. Opaque. */
 typedef struct VmCurveF64 VmCurveF64;
+/** A joint, in double. Opaque. */
+typedef struct VmJointF64 VmJointF64;
+/** A prosthesis and its state, in double. Opaque. */
+typedef struct VmProsthesisF64 VmProsthesisF64;
+/** An FES controller and its state, in double. Opaque. */
+typedef struct VmFesF64 VmFesF64;
 
-/** Bytes of memory of a muscle, of a muscle in a discrete mode, and of an inverse, by number of fibre types. */
+/** Bytes of memory of a muscle, of a muscle in a discrete mode, of an inverse, and of controllers, by number of fibre
+ * types. */
 #define VM_MUSCLE_F32_BYTES(types) (VM_MUSCLE_F32_BASE + (types) * VM_MUSCLE_F32_PER_TYPE)
 #define VM_UNITS_F32_BYTES(types) (VM_UNITS_F32_BASE + (types) * VM_UNITS_F32_PER_TYPE)
 #define VM_STEADY_F32_BYTES(types) (VM_STEADY_F32_BASE + (types) * VM_STEADY_F32_PER_TYPE)
+#define VM_PROSTHESIS_F32_BYTES(types) (VM_PROSTHESIS_F32_BASE + (types) * VM_PROSTHESIS_F32_PER_TYPE)
+#define VM_FES_F32_BYTES(types) (VM_FES_F32_BASE + (types) * VM_FES_F32_PER_TYPE)
 #define VM_MUSCLE_FIXED_BYTES(types) (VM_MUSCLE_FIXED_BASE + (types) * VM_MUSCLE_FIXED_PER_TYPE)
 #define VM_UNITS_FIXED_BYTES(types) (VM_UNITS_FIXED_BASE + (types) * VM_UNITS_FIXED_PER_TYPE)
 #define VM_STEADY_FIXED_BYTES(types) (VM_STEADY_FIXED_BASE + (types) * VM_STEADY_FIXED_PER_TYPE)
+#define VM_PROSTHESIS_FIXED_BYTES(types) (VM_PROSTHESIS_FIXED_BASE + (types) * VM_PROSTHESIS_FIXED_PER_TYPE)
+#define VM_FES_FIXED_BYTES(types) (VM_FES_FIXED_BASE + (types) * VM_FES_FIXED_PER_TYPE)
 #define VM_MUSCLE_F64_BYTES(types) (VM_MUSCLE_F64_BASE + (types) * VM_MUSCLE_F64_PER_TYPE)
 #define VM_UNITS_F64_BYTES(types) (VM_UNITS_F64_BASE + (types) * VM_UNITS_F64_PER_TYPE)
 #define VM_STEADY_F64_BYTES(types) (VM_STEADY_F64_BASE + (types) * VM_STEADY_F64_PER_TYPE)
+#define VM_PROSTHESIS_F64_BYTES(types) (VM_PROSTHESIS_F64_BASE + (types) * VM_PROSTHESIS_F64_PER_TYPE)
+#define VM_FES_F64_BYTES(types) (VM_FES_F64_BASE + (types) * VM_FES_F64_PER_TYPE)
+
+/** Bytes of memory of a joint of one angle and of two, by number of muscles. */
+#define VM_JOINT_F32_BYTES(muscles) (VM_JOINT_F32_BASE + (muscles) * VM_JOINT_F32_PER_MUSCLE)
+#define VM_JOINT_F32_BYTES_OF_TWO(muscles) (VM_JOINT_F32_BASE + (muscles) * VM_JOINT_F32_PER_MUSCLE_OF_TWO)
+#define VM_JOINT_FIXED_BYTES(muscles) (VM_JOINT_FIXED_BASE + (muscles) * VM_JOINT_FIXED_PER_MUSCLE)
+#define VM_JOINT_FIXED_BYTES_OF_TWO(muscles) (VM_JOINT_FIXED_BASE + (muscles) * VM_JOINT_FIXED_PER_MUSCLE_OF_TWO)
+#define VM_JOINT_F64_BYTES(muscles) (VM_JOINT_F64_BASE + (muscles) * VM_JOINT_F64_PER_MUSCLE)
+#define VM_JOINT_F64_BYTES_OF_TWO(muscles) (VM_JOINT_F64_BASE + (muscles) * VM_JOINT_F64_PER_MUSCLE_OF_TWO)
 
 
 /**
@@ -232,6 +266,182 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_PULSE_UNREACHABLE 64
 
 /**
+ * VmPosture: an angle was outside its range and was clipped.
+ */
+#define VM_JOINT_ANGLE_CLIPPED 1
+
+/**
+ * VmPosture: an angle was NaN (taken in the middle of its range) or infinite (clipped).
+ */
+#define VM_JOINT_ANGLE_NOT_FINITE 2
+
+/**
+ * An EMG sample was not a number, or beyond 8 times the range of its envelope.
+ */
+#define VM_PROSTHESIS_EMG_INVALID 1
+
+/**
+ * The angle was outside the joint's range and was clipped.
+ */
+#define VM_PROSTHESIS_ANGLE_CLIPPED 2
+
+/**
+ * The angle was not finite; that of the tick before was kept.
+ */
+#define VM_PROSTHESIS_ANGLE_NOT_FINITE 4
+
+/**
+ * The torque was outside its limits.
+ */
+#define VM_PROSTHESIS_TORQUE_LIMITED 8
+
+/**
+ * The torque changed faster than its rate limit.
+ */
+#define VM_PROSTHESIS_TORQUE_RATE_LIMITED 16
+
+/**
+ * The stiffness was outside its limits; negative stiffness counts as the least.
+ */
+#define VM_PROSTHESIS_STIFFNESS_LIMITED 32
+
+/**
+ * The stiffness changed faster than its rate limit.
+ */
+#define VM_PROSTHESIS_STIFFNESS_RATE_LIMITED 64
+
+/**
+ * A muscle raised a VM_STATUS_ flag, in the command's `muscles`.
+ */
+#define VM_PROSTHESIS_MUSCLE 128
+
+/**
+ * The measured value was not finite: the last one was kept.
+ */
+#define VM_CONTROL_MEASURED_NOT_FINITE 1
+
+/**
+ * The target was not finite (the last angle was kept, without motion) or outside its range
+ * (clipped).
+ */
+#define VM_CONTROL_TARGET_INVALID 2
+
+/**
+ * The measured angle was outside the joint's range and was clipped.
+ */
+#define VM_CONTROL_ANGLE_CLIPPED 4
+
+/**
+ * The torque was clipped to its limits.
+ */
+#define VM_CONTROL_TORQUE_LIMITED 8
+
+/**
+ * No activation makes the torque: a muscle is stimulated fully.
+ */
+#define VM_CONTROL_UNREACHABLE 16
+
+/**
+ * The lead asked for stimulation outside of 0..1.
+ */
+#define VM_CONTROL_LEAD_CLIPPED 32
+
+/**
+ * The gain would have left its range: the update was refused.
+ */
+#define VM_CONTROL_GAIN_REFUSED 64
+
+/**
+ * The gain is frozen: too little torque, or saturated.
+ */
+#define VM_CONTROL_GAIN_FROZEN 128
+
+/**
+ * No pulse recruits what was asked for.
+ */
+#define VM_CONTROL_PULSE_UNREACHABLE 256
+
+/**
+ * Muscles of a prosthesis or controller: flexor and extensor.
+ */
+#define VM_ANTAGONISTS 2
+
+/**
+ * Most angles of a joint.
+ */
+#define VM_JOINT_ANGLES 2
+
+/**
+ * Most muscles of a joint.
+ */
+#define VM_JOINT_MUSCLES 6
+
+/**
+ * Highest power of an angle in a path.
+ */
+#define VM_PATH_ORDER 6
+
+/**
+ * VmPath.action: the moment arm is positive, the path shortens towards greater angles.
+ */
+#define VM_ACTION_FLEXES 0
+
+/**
+ * VmPath.action: the moment arm is negative, the path lengthens towards greater angles.
+ */
+#define VM_ACTION_EXTENDS 1
+
+/**
+ * VmPath.action: the muscle does not cross the joint; its terms are 0.
+ */
+#define VM_ACTION_NONE 2
+
+/**
+ * VmPath.action: the moment arm may change its sign.
+ */
+#define VM_ACTION_EITHER 3
+
+/**
+ * Tibialis anterior and soleus; 0 is a right angle between foot and shank, dorsiflexion positive.
+ */
+#define VM_PRESET_ANKLE 0
+
+/**
+ * Hamstrings and quadriceps, with the hip held; 0 is the straight knee.
+ */
+#define VM_PRESET_KNEE 1
+
+/**
+ * Biceps and triceps; 0 is the straight elbow.
+ */
+#define VM_PRESET_ELBOW 2
+
+/**
+ * Ticks that an envelope can delay by.
+ */
+#define VM_DELAY_TICKS 100
+
+/**
+ * VmFesParams.measured: the joint's angle.
+ */
+#define VM_MEASURED_ANGLE 0
+
+/**
+ * VmFesParams.measured: the muscles' torque.
+ */
+#define VM_MEASURED_TORQUE 1
+
+/**
+ * VmModulation.modulated: the width carries the command, at `amplitude_a`.
+ */
+#define VM_MODULATE_WIDTH 0
+
+/**
+ * VmModulation.modulated: the amplitude carries the command, at `width_s`.
+ */
+#define VM_MODULATE_AMPLITUDE 1
+
+/**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
 #define VM_MUSCLE_F32_BASE 248
@@ -252,6 +462,16 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_UNITS_F32_PER_TYPE 144
 
 /**
+ * Bytes of a VmMuscleF32: two types.
+ */
+#define VM_MUSCLE_F32_SIZE (VM_MUSCLE_F32_BASE + (2 * VM_MUSCLE_F32_PER_TYPE))
+
+/**
+ * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ */
+#define VM_F32_STATE_WORDS 22
+
+/**
  * Bytes of memory of an inverse without fibre types, and of each type.
  */
 #define VM_STEADY_F32_BASE 160
@@ -262,14 +482,9 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_STEADY_F32_PER_TYPE 64
 
 /**
- * Bytes of a VmMuscleF32: two types.
- */
-#define VM_MUSCLE_F32_SIZE 600
-
-/**
  * Bytes of a VmSteadyF32: two types.
  */
-#define VM_STEADY_F32_SIZE 288
+#define VM_STEADY_F32_SIZE (VM_STEADY_F32_BASE + (2 * VM_STEADY_F32_PER_TYPE))
 
 /**
  * Bytes of a VmFatigueF32.
@@ -282,9 +497,64 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_CURVE_F32_SIZE 64
 
 /**
- * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * Bytes of memory of a joint without muscles, and of each muscle of one angle and of two.
  */
-#define VM_F32_STATE_WORDS 22
+#define VM_JOINT_F32_BASE 48
+
+/**
+ * Each muscle of a joint of one angle.
+ */
+#define VM_JOINT_F32_PER_MUSCLE 104
+
+/**
+ * Each muscle of a joint of two angles.
+ */
+#define VM_JOINT_F32_PER_MUSCLE_OF_TWO 192
+
+/**
+ * Bytes of a VmJointF32: one angle and two muscles.
+ */
+#define VM_JOINT_F32_SIZE (VM_JOINT_F32_BASE + (2 * VM_JOINT_F32_PER_MUSCLE))
+
+/**
+ * Bytes of memory of a prosthesis without fibre types, and of each type.
+ */
+#define VM_PROSTHESIS_F32_BASE ((2 * VM_MUSCLE_F32_BASE) + 1232)
+
+/**
+ * Each type.
+ */
+#define VM_PROSTHESIS_F32_PER_TYPE (2 * VM_MUSCLE_F32_PER_TYPE)
+
+/**
+ * Bytes of a VmProsthesisF32: two types.
+ */
+#define VM_PROSTHESIS_F32_SIZE (VM_PROSTHESIS_F32_BASE + (2 * VM_PROSTHESIS_F32_PER_TYPE))
+
+/**
+ * Words of the saved state of a prosthesis of two types.
+ */
+#define VM_PROSTHESIS_F32_WORDS 254
+
+/**
+ * Bytes of memory of an FES controller without fibre types, and of each type.
+ */
+#define VM_FES_F32_BASE ((2 * VM_STEADY_F32_BASE) + 760)
+
+/**
+ * Each type.
+ */
+#define VM_FES_F32_PER_TYPE (2 * VM_STEADY_F32_PER_TYPE)
+
+/**
+ * Bytes of a VmFesF32: two types.
+ */
+#define VM_FES_F32_SIZE (VM_FES_F32_BASE + (2 * VM_FES_F32_PER_TYPE))
+
+/**
+ * Most words of the saved state of an FES controller: both muscles tire.
+ */
+#define VM_FES_F32_WORDS 19
 
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
@@ -307,6 +577,16 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_UNITS_FIXED_PER_TYPE 160
 
 /**
+ * Bytes of a VmMuscleFixed: two types.
+ */
+#define VM_MUSCLE_FIXED_SIZE (VM_MUSCLE_FIXED_BASE + (2 * VM_MUSCLE_FIXED_PER_TYPE))
+
+/**
+ * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ */
+#define VM_FIXED_STATE_WORDS 31
+
+/**
  * Bytes of memory of an inverse without fibre types, and of each type.
  */
 #define VM_STEADY_FIXED_BASE 216
@@ -317,14 +597,9 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_STEADY_FIXED_PER_TYPE 72
 
 /**
- * Bytes of a VmMuscleFixed: two types.
- */
-#define VM_MUSCLE_FIXED_SIZE 720
-
-/**
  * Bytes of a VmSteadyFixed: two types.
  */
-#define VM_STEADY_FIXED_SIZE 360
+#define VM_STEADY_FIXED_SIZE (VM_STEADY_FIXED_BASE + (2 * VM_STEADY_FIXED_PER_TYPE))
 
 /**
  * Bytes of a VmFatigueFixed.
@@ -337,9 +612,64 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_CURVE_FIXED_SIZE 88
 
 /**
- * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * Bytes of memory of a joint without muscles, and of each muscle of one angle and of two.
  */
-#define VM_FIXED_STATE_WORDS 31
+#define VM_JOINT_FIXED_BASE 56
+
+/**
+ * Each muscle of a joint of one angle.
+ */
+#define VM_JOINT_FIXED_PER_MUSCLE 128
+
+/**
+ * Each muscle of a joint of two angles.
+ */
+#define VM_JOINT_FIXED_PER_MUSCLE_OF_TWO 216
+
+/**
+ * Bytes of a VmJointFixed: one angle and two muscles.
+ */
+#define VM_JOINT_FIXED_SIZE (VM_JOINT_FIXED_BASE + (2 * VM_JOINT_FIXED_PER_MUSCLE))
+
+/**
+ * Bytes of memory of a prosthesis without fibre types, and of each type.
+ */
+#define VM_PROSTHESIS_FIXED_BASE ((2 * VM_MUSCLE_FIXED_BASE) + 1288)
+
+/**
+ * Each type.
+ */
+#define VM_PROSTHESIS_FIXED_PER_TYPE (2 * VM_MUSCLE_FIXED_PER_TYPE)
+
+/**
+ * Bytes of a VmProsthesisFixed: two types.
+ */
+#define VM_PROSTHESIS_FIXED_SIZE (VM_PROSTHESIS_FIXED_BASE + (2 * VM_PROSTHESIS_FIXED_PER_TYPE))
+
+/**
+ * Words of the saved state of a prosthesis of two types.
+ */
+#define VM_PROSTHESIS_FIXED_WORDS 276
+
+/**
+ * Bytes of memory of an FES controller without fibre types, and of each type.
+ */
+#define VM_FES_FIXED_BASE ((2 * VM_STEADY_FIXED_BASE) + 912)
+
+/**
+ * Each type.
+ */
+#define VM_FES_FIXED_PER_TYPE (2 * VM_STEADY_FIXED_PER_TYPE)
+
+/**
+ * Bytes of a VmFesFixed: two types.
+ */
+#define VM_FES_FIXED_SIZE (VM_FES_FIXED_BASE + (2 * VM_FES_FIXED_PER_TYPE))
+
+/**
+ * Most words of the saved state of an FES controller: both muscles tire.
+ */
+#define VM_FES_FIXED_WORDS 29
 
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
@@ -362,6 +692,16 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_UNITS_F64_PER_TYPE 288
 
 /**
+ * Bytes of a VmMuscleF64: two types.
+ */
+#define VM_MUSCLE_F64_SIZE (VM_MUSCLE_F64_BASE + (2 * VM_MUSCLE_F64_PER_TYPE))
+
+/**
+ * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ */
+#define VM_F64_STATE_WORDS 22
+
+/**
  * Bytes of memory of an inverse without fibre types, and of each type.
  */
 #define VM_STEADY_F64_BASE 312
@@ -372,14 +712,9 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_STEADY_F64_PER_TYPE 128
 
 /**
- * Bytes of a VmMuscleF64: two types.
- */
-#define VM_MUSCLE_F64_SIZE 1192
-
-/**
  * Bytes of a VmSteadyF64: two types.
  */
-#define VM_STEADY_F64_SIZE 568
+#define VM_STEADY_F64_SIZE (VM_STEADY_F64_BASE + (2 * VM_STEADY_F64_PER_TYPE))
 
 /**
  * Bytes of a VmFatigueF64.
@@ -392,9 +727,64 @@ typedef struct VmCurveF64 VmCurveF64;
 #define VM_CURVE_F64_SIZE 120
 
 /**
- * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * Bytes of memory of a joint without muscles, and of each muscle of one angle and of two.
  */
-#define VM_F64_STATE_WORDS 22
+#define VM_JOINT_F64_BASE 80
+
+/**
+ * Each muscle of a joint of one angle.
+ */
+#define VM_JOINT_F64_PER_MUSCLE 208
+
+/**
+ * Each muscle of a joint of two angles.
+ */
+#define VM_JOINT_F64_PER_MUSCLE_OF_TWO 376
+
+/**
+ * Bytes of a VmJointF64: one angle and two muscles.
+ */
+#define VM_JOINT_F64_SIZE (VM_JOINT_F64_BASE + (2 * VM_JOINT_F64_PER_MUSCLE))
+
+/**
+ * Bytes of memory of a prosthesis without fibre types, and of each type.
+ */
+#define VM_PROSTHESIS_F64_BASE ((2 * VM_MUSCLE_F64_BASE) + 2352)
+
+/**
+ * Each type.
+ */
+#define VM_PROSTHESIS_F64_PER_TYPE (2 * VM_MUSCLE_F64_PER_TYPE)
+
+/**
+ * Bytes of a VmProsthesisF64: two types.
+ */
+#define VM_PROSTHESIS_F64_SIZE (VM_PROSTHESIS_F64_BASE + (2 * VM_PROSTHESIS_F64_PER_TYPE))
+
+/**
+ * Words of the saved state of a prosthesis of two types.
+ */
+#define VM_PROSTHESIS_F64_WORDS 254
+
+/**
+ * Bytes of memory of an FES controller without fibre types, and of each type.
+ */
+#define VM_FES_F64_BASE ((2 * VM_STEADY_F64_BASE) + 1488)
+
+/**
+ * Each type.
+ */
+#define VM_FES_F64_PER_TYPE (2 * VM_STEADY_F64_PER_TYPE)
+
+/**
+ * Bytes of a VmFesF64: two types.
+ */
+#define VM_FES_F64_SIZE (VM_FES_F64_BASE + (2 * VM_FES_F64_PER_TYPE))
+
+/**
+ * Most words of the saved state of an FES controller: both muscles tire.
+ */
+#define VM_FES_F64_WORDS 19
 
 /**
  * Result of a function: VM_RESULT_OK (0), or an error that has changed nothing.
@@ -425,7 +815,7 @@ typedef enum {
    */
   VM_RESULT_STATE = 5,
   /**
-   * The words are of another muscle, mode or time step.
+   * The words are of another muscle, controller, mode or time step.
    */
   VM_RESULT_OTHER_MUSCLE = 6,
   /**
@@ -433,7 +823,7 @@ typedef enum {
    */
   VM_RESULT_ALIGNMENT = 7,
   /**
-   * The muscle has no state yet: call rest or restore first.
+   * There is no state yet: call rest, start or restore first.
    */
   VM_RESULT_NOT_RESTED = 8,
   /**
@@ -727,6 +1117,10 @@ typedef struct {
    */
   int32_t fiber;
   /**
+   * Index of the muscle of a joint or controller; -1 for all else.
+   */
+  int32_t muscle;
+  /**
    * The refused value, in the field's unit.
    */
   double value;
@@ -739,6 +1133,71 @@ typedef struct {
    */
   double most;
 } VmError;
+
+/**
+ * Path of a muscle as a polynomial of one or two angles, with d = angle - reference_rad:
+ * length_m + terms[j][0] d_j + terms[j][1] d_j^2 ... + product d_0 d_1. The moment arm is minus
+ * its derivative by the angle.
+ */
+typedef struct {
+  /**
+   * Path length at the reference angles, m; more than 0, to 4.
+   */
+  double length_m;
+  /**
+   * Reference angles, rad; -6.3 to 6.3.
+   */
+  double reference_rad[VM_JOINT_ANGLES];
+  /**
+   * Of each angle the coefficients of d, d^2, ... d^6, m/rad^k; each -1 to 1.
+   */
+  double terms[VM_JOINT_ANGLES][VM_PATH_ORDER];
+  /**
+   * Coefficient of d_0 d_1, m/rad^2; -1 to 1. Not read with one angle.
+   */
+  double product;
+  /**
+   * VM_ACTION_FLEXES (0), VM_ACTION_EXTENDS, VM_ACTION_NONE or VM_ACTION_EITHER, about each
+   * angle: refused if the moment arm says otherwise somewhere in the range.
+   */
+  uint32_t action[VM_JOINT_ANGLES];
+} VmPath;
+
+/**
+ * A muscle of a joint; vm_joint_muscle fills it in.
+ */
+typedef struct {
+  /**
+   * Path.
+   */
+  VmPath path;
+  /**
+   * Shortest and longest path that the muscle accepts, m.
+   */
+  double path_domain_m[2];
+  /**
+   * F0, N; more than 0, to 16,000.
+   */
+  double max_isometric_force_n;
+  /**
+   * L_ce0, m; 0.005 to 1.
+   */
+  double fascicle_length_m;
+} VmJointMuscle;
+
+/**
+ * Range of an angle.
+ */
+typedef struct {
+  /**
+   * Least angle, rad; -6.3 to 6.3.
+   */
+  double least_rad;
+  /**
+   * Greatest angle, rad; 0.01 more than the least, to 6.3.
+   */
+  double most_rad;
+} VmAngleRange;
 
 /**
  * Motor units of a fibre type.
@@ -957,6 +1416,450 @@ typedef struct {
 } VmSteadyOutputF32;
 
 /**
+ * One or two angles and the muscles about them.
+ */
+typedef struct {
+  /**
+   * VM_VERSION: the version of this header.
+   */
+  uint32_t version;
+  /**
+   * Number of angles; 1 or 2.
+   */
+  uint32_t angle_count;
+  /**
+   * Number of muscles; 1 to 6.
+   */
+  uint32_t muscle_count;
+  /**
+   * Ranges of the angles; only the first `angle_count` are read.
+   */
+  VmAngleRange ranges[VM_JOINT_ANGLES];
+  /**
+   * Muscles; only the first `muscle_count` are read.
+   */
+  VmJointMuscle muscles[VM_JOINT_MUSCLES];
+} VmJointParams;
+
+/**
+ * A muscle in a posture.
+ */
+typedef struct {
+  /**
+   * Path length, m; in fixed point um.
+   */
+  float path_length;
+  /**
+   * Moment arm about each angle, m/rad; positive where the muscle flexes.
+   */
+  float moment_arms[VM_JOINT_ANGLES];
+  /**
+   * Its derivative by the same angle, m/rad^2.
+   */
+  float arm_slopes[VM_JOINT_ANGLES];
+} VmPlacedF32;
+
+/**
+ * The muscles in a posture; of those and of angles that the joint does not have, all is 0.
+ */
+typedef struct {
+  /**
+   * Path and moment arms of each muscle.
+   */
+  VmPlacedF32 muscles[VM_JOINT_MUSCLES];
+  /**
+   * VM_JOINT_ flags.
+   */
+  uint8_t status;
+} VmPostureF32;
+
+/**
+ * Envelope of an EMG.
+ */
+typedef struct {
+  /**
+   * Mean rectified EMG at rest, mV; 0 to 10.
+   */
+  double rest_mv;
+  /**
+   * Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 more than at rest, to 10.
+   */
+  double maximal_mv;
+  /**
+   * Cutoff, Hz; 0.5 to 20.
+   */
+  double cutoff_frequency_hz;
+  /**
+   * Electromechanical delay, s; 0 to 100 ticks.
+   */
+  double delay_s;
+  /**
+   * Shape; -3 to 0. More negative raises weak contractions.
+   */
+  double shape;
+} VmEnvelope;
+
+/**
+ * Limits of a torque.
+ */
+typedef struct {
+  /**
+   * Least torque, N m; -30,000 to 30,000.
+   */
+  double least_nm;
+  /**
+   * Greatest torque, N m; at least the least, to 30,000.
+   */
+  double most_nm;
+  /**
+   * Greatest change, N m/s; more than 0, to 1e7.
+   */
+  double rate_nm_per_s;
+} VmTorqueLimits;
+
+/**
+ * Limits of a stiffness.
+ */
+typedef struct {
+  /**
+   * Least stiffness, N m/rad; -30,000 to 30,000.
+   */
+  double least_nm_per_rad;
+  /**
+   * Greatest stiffness, N m/rad; at least the least, to 30,000.
+   */
+  double most_nm_per_rad;
+  /**
+   * Greatest change, N m/rad/s; more than 0, to 1e7.
+   */
+  double rate_nm_per_rad_s;
+} VmStiffnessLimits;
+
+/**
+ * A prosthesis; pairs are flexor and extensor.
+ */
+typedef struct {
+  /**
+   * Range of the joint.
+   */
+  VmAngleRange range;
+  /**
+   * Muscles, of as many fibre types.
+   */
+  VmMuscleParams muscles[VM_ANTAGONISTS];
+  /**
+   * Their paths, of one angle.
+   */
+  VmPath paths[VM_ANTAGONISTS];
+  /**
+   * Their EMGs.
+   */
+  VmEnvelope envelopes[VM_ANTAGONISTS];
+  /**
+   * Limits of the torque.
+   */
+  VmTorqueLimits torque;
+  /**
+   * Limits of the stiffness.
+   */
+  VmStiffnessLimits stiffness;
+} VmProsthesisParams;
+
+/**
+ * Inputs of a prosthesis in a tick.
+ */
+typedef struct {
+  /**
+   * EMG of flexor and extensor, mV.
+   */
+  float emg_mv[VM_ANTAGONISTS];
+  /**
+   * Measured angle, rad.
+   */
+  float angle_rad;
+} VmProsthesisInputF32;
+
+/**
+ * What a prosthesis commands in a tick.
+ */
+typedef struct {
+  /**
+   * Torque, N m; flexion is positive.
+   */
+  float torque_nm;
+  /**
+   * Stiffness about the measured angle, N m/rad.
+   */
+  float stiffness_nm_per_rad;
+  /**
+   * Activations of flexor and extensor, 0..1.
+   */
+  float activations[VM_ANTAGONISTS];
+  /**
+   * VM_STATUS_ flags of the muscles.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_PROSTHESIS_ flags.
+   */
+  uint16_t status;
+} VmProsthesisCommandF32;
+
+/**
+ * What a prosthesis or controller says of itself.
+ */
+typedef struct {
+  /**
+   * Number of fibre types of each muscle.
+   */
+  uint32_t fiber_count;
+  /**
+   * Words of a saved state.
+   */
+  uint32_t state_words;
+} VmControlInfo;
+
+/**
+ * The limb that a joint moves.
+ */
+typedef struct {
+  /**
+   * Inertia about the joint, kg m^2; 0 to 10.
+   */
+  double inertia_kg_m2;
+  /**
+   * Damping, N m s/rad; 0 to 100.
+   */
+  double damping_nm_s_per_rad;
+  /**
+   * Weight times the distance of its centre, N m; 0 to 200.
+   */
+  double gravity_nm;
+  /**
+   * Angle at which the limb hangs straight down, rad; -6.3 to 6.3.
+   */
+  double hanging_angle_rad;
+} VmLimb;
+
+/**
+ * Which half of the pulse carries the command.
+ */
+typedef struct {
+  /**
+   * VM_MODULATE_WIDTH (0) or VM_MODULATE_AMPLITUDE.
+   */
+  uint32_t modulated;
+  /**
+   * Amplitude of VM_MODULATE_WIDTH, A; 1e-4 to 0.2.
+   */
+  double amplitude_a;
+  /**
+   * Width of VM_MODULATE_AMPLITUDE, s; 2e-5 to 1e-3.
+   */
+  double width_s;
+} VmModulation;
+
+/**
+ * Gains of the feedback, in N m per rad; with VM_MEASURED_TORQUE in N m per N m.
+ */
+typedef struct {
+  /**
+   * k_p; 0 to 1,000.
+   */
+  double proportional;
+  /**
+   * k_i, per s; 0 to 10,000.
+   */
+  double integral_per_s;
+  /**
+   * k_d, times s; 0 to 100.
+   */
+  double derivative_s;
+  /**
+   * Filter time of the derivative, s; 0.005 to 1.
+   */
+  double derivative_filter_s;
+  /**
+   * Greatest torque of the integral, N m; 0 to 1,000.
+   */
+  double most_integral_nm;
+} VmFeedback;
+
+/**
+ * On-line estimate of the muscles' gain.
+ */
+typedef struct {
+  /**
+   * Time constant, s; 0.1 to 1,000.
+   */
+  double time_s;
+  /**
+   * Least gain; 0.1 to 1.
+   */
+  double least_gain;
+  /**
+   * Greatest gain; 1 to 10.
+   */
+  double most_gain;
+  /**
+   * Torque below which nothing can be learnt, N m; 0.01 to 100.
+   */
+  double excitation_nm;
+} VmGain;
+
+/**
+ * An FES controller of a joint; pairs are flexor and extensor.
+ */
+typedef struct {
+  /**
+   * Range of the joint; targets are clipped to it.
+   */
+  VmAngleRange range;
+  /**
+   * Muscles, of as many fibre types.
+   */
+  VmMuscleParams muscles[VM_ANTAGONISTS];
+  /**
+   * Their paths, of one angle.
+   */
+  VmPath paths[VM_ANTAGONISTS];
+  /**
+   * The limb that moves.
+   */
+  VmLimb limb;
+  /**
+   * Electrodes.
+   */
+  VmCurveParams electrodes[VM_ANTAGONISTS];
+  /**
+   * How they are driven.
+   */
+  VmModulation modulation[VM_ANTAGONISTS];
+  /**
+   * Stimulation frequency, pps; 1 to 100.
+   */
+  double stimulation_frequency_pps;
+  /**
+   * Torque that each muscle makes against the other, N m; 0 to 100.
+   */
+  double cocontraction_nm;
+  /**
+   * Feedback.
+   */
+  VmFeedback feedback;
+  /**
+   * Lag of the joint behind the target that the feedback expects, s; 0.001 to 1.
+   */
+  double expected_lag_s;
+  /**
+   * Filter time of the lead, s; a tenth of the muscle's rise and fall times to 1.
+   */
+  double lead_filter_time_s;
+  /**
+   * Fatigue that is made up for, if has_fatigue.
+   */
+  VmFatigueParams fatigue[VM_ANTAGONISTS];
+  /**
+   * Fitness that is made up for at most; 0.1 to 1.
+   */
+  double least_fitness;
+  /**
+   * Estimate of the muscles' gain, if has_gain.
+   */
+  VmGain gain;
+  /**
+   * Least torque, N m; -1,000 to 0.
+   */
+  double least_torque_nm;
+  /**
+   * Greatest torque, N m; 0 to 1,000.
+   */
+  double most_torque_nm;
+  /**
+   * What is measured: VM_MEASURED_ANGLE (0) or VM_MEASURED_TORQUE.
+   */
+  uint32_t measured;
+  /**
+   * 1 if the muscle tires, 0 if not.
+   */
+  uint32_t has_fatigue[VM_ANTAGONISTS];
+  /**
+   * 1 if the gain is estimated, 0 if not.
+   */
+  uint32_t has_gain;
+} VmFesParams;
+
+/**
+ * What an FES controller is to do in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  float angle_rad;
+  /**
+   * Its velocity, rad/s.
+   */
+  float velocity_rad_per_s;
+  /**
+   * Its acceleration, rad/s^2.
+   */
+  float acceleration_rad_per_s2;
+  /**
+   * Torque in addition to that of the motion, N m; with VM_MEASURED_TORQUE the only one.
+   */
+  float torque_nm;
+} VmTargetF32;
+
+/**
+ * What an FES controller measures in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  float angle_rad;
+  /**
+   * Torque of the muscles, N m; used with VM_MEASURED_TORQUE only.
+   */
+  float torque_nm;
+} VmSensorsF32;
+
+/**
+ * What an FES controller commands in a tick; pairs are flexor and extensor.
+ */
+typedef struct {
+  /**
+   * Stimulation, 0..1.
+   */
+  float activations[VM_ANTAGONISTS];
+  /**
+   * Amplitude of the pulse that recruits it, mA.
+   */
+  float amplitude_ma[VM_ANTAGONISTS];
+  /**
+   * Width of that pulse, us.
+   */
+  float width_us[VM_ANTAGONISTS];
+  /**
+   * Torque that was asked of the model's inverse, N m.
+   */
+  float torque_nm;
+  /**
+   * Estimated gain of the muscles.
+   */
+  float gain;
+  /**
+   * VM_STATUS_ flags of the inverse.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_CONTROL_ flags.
+   */
+  uint16_t status;
+} VmFesCommandF32;
+
+/**
  * Inputs of a tick.
  */
 typedef struct {
@@ -1095,6 +1998,148 @@ typedef struct {
    */
   uint16_t status;
 } VmSteadyOutputFixed;
+
+/**
+ * A muscle in a posture.
+ */
+typedef struct {
+  /**
+   * Path length, m; in fixed point um.
+   */
+  int32_t path_length;
+  /**
+   * Moment arm about each angle, m/rad; positive where the muscle flexes.
+   */
+  int32_t moment_arms[VM_JOINT_ANGLES];
+  /**
+   * Its derivative by the same angle, m/rad^2.
+   */
+  int32_t arm_slopes[VM_JOINT_ANGLES];
+} VmPlacedFixed;
+
+/**
+ * The muscles in a posture; of those and of angles that the joint does not have, all is 0.
+ */
+typedef struct {
+  /**
+   * Path and moment arms of each muscle.
+   */
+  VmPlacedFixed muscles[VM_JOINT_MUSCLES];
+  /**
+   * VM_JOINT_ flags.
+   */
+  uint8_t status;
+} VmPostureFixed;
+
+/**
+ * Inputs of a prosthesis in a tick.
+ */
+typedef struct {
+  /**
+   * EMG of flexor and extensor, mV.
+   */
+  int32_t emg_mv[VM_ANTAGONISTS];
+  /**
+   * Measured angle, rad.
+   */
+  int32_t angle_rad;
+} VmProsthesisInputFixed;
+
+/**
+ * What a prosthesis commands in a tick.
+ */
+typedef struct {
+  /**
+   * Torque, N m; flexion is positive.
+   */
+  int32_t torque_nm;
+  /**
+   * Stiffness about the measured angle, N m/rad.
+   */
+  int32_t stiffness_nm_per_rad;
+  /**
+   * Activations of flexor and extensor, 0..1.
+   */
+  int32_t activations[VM_ANTAGONISTS];
+  /**
+   * VM_STATUS_ flags of the muscles.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_PROSTHESIS_ flags.
+   */
+  uint16_t status;
+} VmProsthesisCommandFixed;
+
+/**
+ * What an FES controller is to do in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  int32_t angle_rad;
+  /**
+   * Its velocity, rad/s.
+   */
+  int32_t velocity_rad_per_s;
+  /**
+   * Its acceleration, rad/s^2.
+   */
+  int32_t acceleration_rad_per_s2;
+  /**
+   * Torque in addition to that of the motion, N m; with VM_MEASURED_TORQUE the only one.
+   */
+  int32_t torque_nm;
+} VmTargetFixed;
+
+/**
+ * What an FES controller measures in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  int32_t angle_rad;
+  /**
+   * Torque of the muscles, N m; used with VM_MEASURED_TORQUE only.
+   */
+  int32_t torque_nm;
+} VmSensorsFixed;
+
+/**
+ * What an FES controller commands in a tick; pairs are flexor and extensor.
+ */
+typedef struct {
+  /**
+   * Stimulation, 0..1.
+   */
+  int32_t activations[VM_ANTAGONISTS];
+  /**
+   * Amplitude of the pulse that recruits it, mA.
+   */
+  int32_t amplitude_ma[VM_ANTAGONISTS];
+  /**
+   * Width of that pulse, us.
+   */
+  int32_t width_us[VM_ANTAGONISTS];
+  /**
+   * Torque that was asked of the model's inverse, N m.
+   */
+  int32_t torque_nm;
+  /**
+   * Estimated gain of the muscles.
+   */
+  int32_t gain;
+  /**
+   * VM_STATUS_ flags of the inverse.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_CONTROL_ flags.
+   */
+  uint16_t status;
+} VmFesCommandFixed;
 
 /**
  * Inputs of a tick.
@@ -1236,6 +2281,148 @@ typedef struct {
   uint16_t status;
 } VmSteadyOutputF64;
 
+/**
+ * A muscle in a posture.
+ */
+typedef struct {
+  /**
+   * Path length, m; in fixed point um.
+   */
+  double path_length;
+  /**
+   * Moment arm about each angle, m/rad; positive where the muscle flexes.
+   */
+  double moment_arms[VM_JOINT_ANGLES];
+  /**
+   * Its derivative by the same angle, m/rad^2.
+   */
+  double arm_slopes[VM_JOINT_ANGLES];
+} VmPlacedF64;
+
+/**
+ * The muscles in a posture; of those and of angles that the joint does not have, all is 0.
+ */
+typedef struct {
+  /**
+   * Path and moment arms of each muscle.
+   */
+  VmPlacedF64 muscles[VM_JOINT_MUSCLES];
+  /**
+   * VM_JOINT_ flags.
+   */
+  uint8_t status;
+} VmPostureF64;
+
+/**
+ * Inputs of a prosthesis in a tick.
+ */
+typedef struct {
+  /**
+   * EMG of flexor and extensor, mV.
+   */
+  double emg_mv[VM_ANTAGONISTS];
+  /**
+   * Measured angle, rad.
+   */
+  double angle_rad;
+} VmProsthesisInputF64;
+
+/**
+ * What a prosthesis commands in a tick.
+ */
+typedef struct {
+  /**
+   * Torque, N m; flexion is positive.
+   */
+  double torque_nm;
+  /**
+   * Stiffness about the measured angle, N m/rad.
+   */
+  double stiffness_nm_per_rad;
+  /**
+   * Activations of flexor and extensor, 0..1.
+   */
+  double activations[VM_ANTAGONISTS];
+  /**
+   * VM_STATUS_ flags of the muscles.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_PROSTHESIS_ flags.
+   */
+  uint16_t status;
+} VmProsthesisCommandF64;
+
+/**
+ * What an FES controller is to do in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  double angle_rad;
+  /**
+   * Its velocity, rad/s.
+   */
+  double velocity_rad_per_s;
+  /**
+   * Its acceleration, rad/s^2.
+   */
+  double acceleration_rad_per_s2;
+  /**
+   * Torque in addition to that of the motion, N m; with VM_MEASURED_TORQUE the only one.
+   */
+  double torque_nm;
+} VmTargetF64;
+
+/**
+ * What an FES controller measures in a tick.
+ */
+typedef struct {
+  /**
+   * Angle, rad.
+   */
+  double angle_rad;
+  /**
+   * Torque of the muscles, N m; used with VM_MEASURED_TORQUE only.
+   */
+  double torque_nm;
+} VmSensorsF64;
+
+/**
+ * What an FES controller commands in a tick; pairs are flexor and extensor.
+ */
+typedef struct {
+  /**
+   * Stimulation, 0..1.
+   */
+  double activations[VM_ANTAGONISTS];
+  /**
+   * Amplitude of the pulse that recruits it, mA.
+   */
+  double amplitude_ma[VM_ANTAGONISTS];
+  /**
+   * Width of that pulse, us.
+   */
+  double width_us[VM_ANTAGONISTS];
+  /**
+   * Torque that was asked of the model's inverse, N m.
+   */
+  double torque_nm;
+  /**
+   * Estimated gain of the muscles.
+   */
+  double gain;
+  /**
+   * VM_STATUS_ flags of the inverse.
+   */
+  uint16_t muscles[VM_ANTAGONISTS];
+  /**
+   * VM_CONTROL_ flags.
+   */
+  uint16_t status;
+} VmFesCommandF64;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1267,6 +2454,42 @@ VmResult vm_params_feline(VmElements *elements, VmFiber *super_slow, VmFiber *sl
  * may be null, has the field, value and limits.
  */
 VmResult vm_params_derive(const VmMuscleParams *params, VmDerived *derived, VmError *error);
+
+/**
+ * Elements, a slow and a fast fibre type of the paper's table 1 (Song et al. 2008); fractions are
+ * one half each. Null pointers are skipped.
+ */
+VmResult vm_params_paper(VmElements *elements, VmFiber *slow, VmFiber *fast);
+
+/**
+ * Elements, a super-slow, a slow and a fast fibre type of human muscle, as in Virtual Muscle 4.0;
+ * fractions are one half each. Null pointers are skipped.
+ */
+VmResult vm_params_human(VmElements *elements, VmFiber *super_slow, VmFiber *slow, VmFiber *fast);
+
+/**
+ * The same of feline muscle.
+ */
+VmResult vm_params_feline(VmElements *elements, VmFiber *super_slow, VmFiber *slow, VmFiber *fast);
+
+/**
+ * A muscle on a path, for a joint: F0, L_ce0 and path range are those of its parameters, which are
+ * validated; the path is when a joint is built. `error` may be null.
+ */
+VmResult vm_joint_muscle(const VmMuscleParams *params,
+                         const VmPath *path,
+                         VmJointMuscle *muscle,
+                         VmError *error);
+
+/**
+ * Range, flexor and extensor of a published joint: VM_PRESET_ANKLE, VM_PRESET_KNEE or
+ * VM_PRESET_ELBOW. `muscles` and `paths` have room for two; null pointers are skipped.
+ * VM_RESULT_PARAMETER if there is no such preset.
+ */
+VmResult vm_joint_preset(uint32_t preset,
+                         VmAngleRange *range,
+                         VmMuscleParams *muscles,
+                         VmPath *paths);
 
 /**
  * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
@@ -1449,6 +2672,169 @@ VmResult vm_f32_steady_activation_for(const VmSteadyF32 *steady,
                                       float force,
                                       const VmInputF32 *input,
                                       VmSteadyOutputF32 *output);
+
+/**
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
+ * discrete mode, which has none.
+ */
+VmResult vm_f32_stiffness(const VmMuscleF32 *muscle, float *stiffness);
+
+/**
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
+ * is no such joint.
+ */
+VmResult vm_f32_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
+
+/**
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
+ * has the field, and the muscle's index.
+ */
+VmResult vm_f32_joint_build(VmJointF32 *joint,
+                            size_t size,
+                            const VmJointParams *params,
+                            VmError *error);
+
+/**
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
+ * that of the angles; VM_RESULT_SIZE if the joint has more.
+ */
+VmResult vm_f32_joint_posture(const VmJointF32 *joint,
+                              const float *angles_rad,
+                              size_t count,
+                              VmPostureF32 *posture);
+
+/**
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
+ * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ */
+VmResult vm_f32_joint_torques(const VmJointF32 *joint,
+                              const VmPostureF32 *posture,
+                              const float *relative_forces,
+                              size_t muscle_count,
+                              float *torques_nm,
+                              size_t angle_count);
+
+/**
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
+ * (vm_f32_stiffness); negative if the posture is unstable.
+ */
+VmResult vm_f32_joint_stiffnesses(const VmJointF32 *joint,
+                                  const VmPostureF32 *posture,
+                                  const float *relative_forces,
+                                  const float *relative_stiffnesses,
+                                  size_t muscle_count,
+                                  float *stiffnesses_nm_per_rad,
+                                  size_t angle_count);
+
+/**
+ * Checksum of a joint's coefficients.
+ */
+VmResult vm_f32_joint_checksum(const VmJointF32 *joint, uint32_t *checksum);
+
+/**
+ * Bytes of memory that a prosthesis whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_f32_prosthesis_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_f32_prosthesis_build(VmProsthesisF32 *prosthesis,
+                                 size_t size,
+                                 const VmProsthesisParams *params,
+                                 double time_step_s,
+                                 VmError *error);
+
+/**
+ * Puts a prosthesis at rest at an angle (rad), which is clipped to the joint's range.
+ */
+VmResult vm_f32_prosthesis_rest(VmProsthesisF32 *prosthesis, float angle_rad);
+
+/**
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ */
+VmResult vm_f32_prosthesis_step(VmProsthesisF32 *prosthesis,
+                                const VmProsthesisInputF32 *input,
+                                VmProsthesisCommandF32 *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_f32_prosthesis_info(const VmProsthesisF32 *prosthesis, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_f32_prosthesis_save(const VmProsthesisF32 *prosthesis, uint32_t *words, size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_f32_prosthesis_restore(VmProsthesisF32 *prosthesis,
+                                   const uint32_t *words,
+                                   size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_f32_prosthesis_checksums(const VmProsthesisF32 *prosthesis,
+                                     uint32_t *coefficients,
+                                     uint32_t *state);
+
+/**
+ * Bytes of memory that an FES controller whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_f32_fes_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_f32_fes_build(VmFesF32 *fes,
+                          size_t size,
+                          const VmFesParams *params,
+                          double time_step_s,
+                          VmError *error);
+
+/**
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
+ * muscles and a gain of 1.
+ */
+VmResult vm_f32_fes_start(VmFesF32 *fes, float angle_rad);
+
+/**
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
+ * restore.
+ */
+VmResult vm_f32_fes_step(VmFesF32 *fes,
+                         const VmTargetF32 *target,
+                         const VmSensorsF32 *sensors,
+                         VmFesCommandF32 *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_f32_fes_info(const VmFesF32 *fes, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_f32_fes_save(const VmFesF32 *fes, uint32_t *words, size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_f32_fes_restore(VmFesF32 *fes, const uint32_t *words, size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_f32_fes_checksums(const VmFesF32 *fes, uint32_t *coefficients, uint32_t *state);
 
 /**
  * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
@@ -1635,6 +3021,171 @@ VmResult vm_fixed_steady_activation_for(const VmSteadyFixed *steady,
                                         VmSteadyOutputFixed *output);
 
 /**
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
+ * discrete mode, which has none.
+ */
+VmResult vm_fixed_stiffness(const VmMuscleFixed *muscle, int32_t *stiffness);
+
+/**
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
+ * is no such joint.
+ */
+VmResult vm_fixed_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
+
+/**
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
+ * has the field, and the muscle's index.
+ */
+VmResult vm_fixed_joint_build(VmJointFixed *joint,
+                              size_t size,
+                              const VmJointParams *params,
+                              VmError *error);
+
+/**
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
+ * that of the angles; VM_RESULT_SIZE if the joint has more.
+ */
+VmResult vm_fixed_joint_posture(const VmJointFixed *joint,
+                                const int32_t *angles_rad,
+                                size_t count,
+                                VmPostureFixed *posture);
+
+/**
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
+ * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ */
+VmResult vm_fixed_joint_torques(const VmJointFixed *joint,
+                                const VmPostureFixed *posture,
+                                const int32_t *relative_forces,
+                                size_t muscle_count,
+                                int32_t *torques_nm,
+                                size_t angle_count);
+
+/**
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
+ * (vm_fixed_stiffness); negative if the posture is unstable.
+ */
+VmResult vm_fixed_joint_stiffnesses(const VmJointFixed *joint,
+                                    const VmPostureFixed *posture,
+                                    const int32_t *relative_forces,
+                                    const int32_t *relative_stiffnesses,
+                                    size_t muscle_count,
+                                    int32_t *stiffnesses_nm_per_rad,
+                                    size_t angle_count);
+
+/**
+ * Checksum of a joint's coefficients.
+ */
+VmResult vm_fixed_joint_checksum(const VmJointFixed *joint, uint32_t *checksum);
+
+/**
+ * Bytes of memory that a prosthesis whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_fixed_prosthesis_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_fixed_prosthesis_build(VmProsthesisFixed *prosthesis,
+                                   size_t size,
+                                   const VmProsthesisParams *params,
+                                   double time_step_s,
+                                   VmError *error);
+
+/**
+ * Puts a prosthesis at rest at an angle (rad), which is clipped to the joint's range.
+ */
+VmResult vm_fixed_prosthesis_rest(VmProsthesisFixed *prosthesis, int32_t angle_rad);
+
+/**
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ */
+VmResult vm_fixed_prosthesis_step(VmProsthesisFixed *prosthesis,
+                                  const VmProsthesisInputFixed *input,
+                                  VmProsthesisCommandFixed *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_fixed_prosthesis_info(const VmProsthesisFixed *prosthesis, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_fixed_prosthesis_save(const VmProsthesisFixed *prosthesis,
+                                  uint32_t *words,
+                                  size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_fixed_prosthesis_restore(VmProsthesisFixed *prosthesis,
+                                     const uint32_t *words,
+                                     size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_fixed_prosthesis_checksums(const VmProsthesisFixed *prosthesis,
+                                       uint32_t *coefficients,
+                                       uint32_t *state);
+
+/**
+ * Bytes of memory that an FES controller whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_fixed_fes_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_fixed_fes_build(VmFesFixed *fes,
+                            size_t size,
+                            const VmFesParams *params,
+                            double time_step_s,
+                            VmError *error);
+
+/**
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
+ * muscles and a gain of 1.
+ */
+VmResult vm_fixed_fes_start(VmFesFixed *fes, int32_t angle_rad);
+
+/**
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
+ * restore.
+ */
+VmResult vm_fixed_fes_step(VmFesFixed *fes,
+                           const VmTargetFixed *target,
+                           const VmSensorsFixed *sensors,
+                           VmFesCommandFixed *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_fixed_fes_info(const VmFesFixed *fes, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_fixed_fes_save(const VmFesFixed *fes, uint32_t *words, size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_fixed_fes_restore(VmFesFixed *fes, const uint32_t *words, size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_fixed_fes_checksums(const VmFesFixed *fes, uint32_t *coefficients, uint32_t *state);
+
+/**
  * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
  * this library has none of that kind.
  */
@@ -1816,6 +3367,169 @@ VmResult vm_f64_steady_activation_for(const VmSteadyF64 *steady,
                                       const VmInputF64 *input,
                                       VmSteadyOutputF64 *output);
 
+/**
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
+ * discrete mode, which has none.
+ */
+VmResult vm_f64_stiffness(const VmMuscleF64 *muscle, double *stiffness);
+
+/**
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
+ * is no such joint.
+ */
+VmResult vm_f64_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
+
+/**
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
+ * has the field, and the muscle's index.
+ */
+VmResult vm_f64_joint_build(VmJointF64 *joint,
+                            size_t size,
+                            const VmJointParams *params,
+                            VmError *error);
+
+/**
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
+ * that of the angles; VM_RESULT_SIZE if the joint has more.
+ */
+VmResult vm_f64_joint_posture(const VmJointF64 *joint,
+                              const double *angles_rad,
+                              size_t count,
+                              VmPostureF64 *posture);
+
+/**
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
+ * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ */
+VmResult vm_f64_joint_torques(const VmJointF64 *joint,
+                              const VmPostureF64 *posture,
+                              const double *relative_forces,
+                              size_t muscle_count,
+                              double *torques_nm,
+                              size_t angle_count);
+
+/**
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
+ * (vm_f64_stiffness); negative if the posture is unstable.
+ */
+VmResult vm_f64_joint_stiffnesses(const VmJointF64 *joint,
+                                  const VmPostureF64 *posture,
+                                  const double *relative_forces,
+                                  const double *relative_stiffnesses,
+                                  size_t muscle_count,
+                                  double *stiffnesses_nm_per_rad,
+                                  size_t angle_count);
+
+/**
+ * Checksum of a joint's coefficients.
+ */
+VmResult vm_f64_joint_checksum(const VmJointF64 *joint, uint32_t *checksum);
+
+/**
+ * Bytes of memory that a prosthesis whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_f64_prosthesis_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_f64_prosthesis_build(VmProsthesisF64 *prosthesis,
+                                 size_t size,
+                                 const VmProsthesisParams *params,
+                                 double time_step_s,
+                                 VmError *error);
+
+/**
+ * Puts a prosthesis at rest at an angle (rad), which is clipped to the joint's range.
+ */
+VmResult vm_f64_prosthesis_rest(VmProsthesisF64 *prosthesis, double angle_rad);
+
+/**
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ */
+VmResult vm_f64_prosthesis_step(VmProsthesisF64 *prosthesis,
+                                const VmProsthesisInputF64 *input,
+                                VmProsthesisCommandF64 *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_f64_prosthesis_info(const VmProsthesisF64 *prosthesis, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_f64_prosthesis_save(const VmProsthesisF64 *prosthesis, uint64_t *words, size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_f64_prosthesis_restore(VmProsthesisF64 *prosthesis,
+                                   const uint64_t *words,
+                                   size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_f64_prosthesis_checksums(const VmProsthesisF64 *prosthesis,
+                                     uint32_t *coefficients,
+                                     uint32_t *state);
+
+/**
+ * Bytes of memory that an FES controller whose muscles have `fiber_count` types needs.
+ * VM_RESULT_PARAMETER if this library has none.
+ */
+VmResult vm_f64_fes_size(uint32_t fiber_count, size_t *size);
+
+/**
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
+ * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ */
+VmResult vm_f64_fes_build(VmFesF64 *fes,
+                          size_t size,
+                          const VmFesParams *params,
+                          double time_step_s,
+                          VmError *error);
+
+/**
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
+ * muscles and a gain of 1.
+ */
+VmResult vm_f64_fes_start(VmFesF64 *fes, double angle_rad);
+
+/**
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
+ * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
+ * restore.
+ */
+VmResult vm_f64_fes_step(VmFesF64 *fes,
+                         const VmTargetF64 *target,
+                         const VmSensorsF64 *sensors,
+                         VmFesCommandF64 *command);
+
+/**
+ * Number of fibre types, and of words of a saved state.
+ */
+VmResult vm_f64_fes_info(const VmFesF64 *fes, VmControlInfo *info);
+
+/**
+ * Saves the state, with a fingerprint. VM_RESULT_SIZE if there is no room for its words.
+ */
+VmResult vm_f64_fes_save(const VmFesF64 *fes, uint64_t *words, size_t count);
+
+/**
+ * Restores a saved state, with the results of a muscle's restore.
+ */
+VmResult vm_f64_fes_restore(VmFesF64 *fes, const uint64_t *words, size_t count);
+
+/**
+ * Checksums of the coefficients and of the state.
+ */
+VmResult vm_f64_fes_checksums(const VmFesF64 *fes, uint32_t *coefficients, uint32_t *state);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -1840,6 +3554,21 @@ struct VmCurveF32 {
   uint64_t opaque[VM_CURVE_F32_SIZE / 8];
 };
 
+struct VmJointF32 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_JOINT_F32_SIZE / 8];
+};
+
+struct VmProsthesisF32 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_PROSTHESIS_F32_SIZE / 8];
+};
+
+struct VmFesF32 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_FES_F32_SIZE / 8];
+};
+
 struct VmMuscleFixed {
   /** Not to be touched. */
   uint64_t opaque[VM_MUSCLE_FIXED_SIZE / 8];
@@ -1858,6 +3587,21 @@ struct VmFatigueFixed {
 struct VmCurveFixed {
   /** Not to be touched. */
   uint64_t opaque[VM_CURVE_FIXED_SIZE / 8];
+};
+
+struct VmJointFixed {
+  /** Not to be touched. */
+  uint64_t opaque[VM_JOINT_FIXED_SIZE / 8];
+};
+
+struct VmProsthesisFixed {
+  /** Not to be touched. */
+  uint64_t opaque[VM_PROSTHESIS_FIXED_SIZE / 8];
+};
+
+struct VmFesFixed {
+  /** Not to be touched. */
+  uint64_t opaque[VM_FES_FIXED_SIZE / 8];
 };
 
 struct VmMuscleF64 {
@@ -1880,6 +3624,21 @@ struct VmCurveF64 {
   uint64_t opaque[VM_CURVE_F64_SIZE / 8];
 };
 
+struct VmJointF64 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_JOINT_F64_SIZE / 8];
+};
+
+struct VmProsthesisF64 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_PROSTHESIS_F64_SIZE / 8];
+};
+
+struct VmFesF64 {
+  /** Not to be touched. */
+  uint64_t opaque[VM_FES_F64_SIZE / 8];
+};
+
 /* A compiler with another layout, as by -fpack-struct, stops here. */
 #if defined(__cplusplus)
 #define VM_ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), #type " has another size than the library's")
@@ -1897,33 +3656,77 @@ VM_ASSERT_SIZE(VmUnitSizes, 24);
 VM_ASSERT_SIZE(VmUnits, 144);
 VM_ASSERT_SIZE(VmFatigueParams, 32);
 VM_ASSERT_SIZE(VmCurveParams, 32);
+VM_ASSERT_SIZE(VmAngleRange, 16);
+VM_ASSERT_SIZE(VmPath, 136);
+VM_ASSERT_SIZE(VmJointMuscle, 168);
+VM_ASSERT_SIZE(VmJointParams, 1056);
+VM_ASSERT_SIZE(VmEnvelope, 40);
+VM_ASSERT_SIZE(VmTorqueLimits, 24);
+VM_ASSERT_SIZE(VmStiffnessLimits, 24);
+VM_ASSERT_SIZE(VmProsthesisParams, 3504);
+VM_ASSERT_SIZE(VmLimb, 32);
+VM_ASSERT_SIZE(VmModulation, 24);
+VM_ASSERT_SIZE(VmFeedback, 40);
+VM_ASSERT_SIZE(VmGain, 32);
+VM_ASSERT_SIZE(VmFesParams, 3728);
+VM_ASSERT_SIZE(VmControlInfo, 8);
 VM_ASSERT_SIZE(VmInputF32, 12);
 VM_ASSERT_SIZE(VmOutputF32, 20);
 VM_ASSERT_SIZE(VmInfoF32, 28);
 VM_ASSERT_SIZE(VmSteadyOutputF32, 20);
 VM_ASSERT_SIZE(VmFiberCurvesF32, 12);
 VM_ASSERT_SIZE(VmElementCurvesF32, 12);
+VM_ASSERT_SIZE(VmPlacedF32, 20);
+VM_ASSERT_SIZE(VmPostureF32, 124);
+VM_ASSERT_SIZE(VmProsthesisInputF32, 12);
+VM_ASSERT_SIZE(VmProsthesisCommandF32, 24);
+VM_ASSERT_SIZE(VmTargetF32, 16);
+VM_ASSERT_SIZE(VmSensorsF32, 8);
+VM_ASSERT_SIZE(VmFesCommandF32, 40);
 VM_ASSERT_SIZE(VmInputFixed, 8);
 VM_ASSERT_SIZE(VmOutputFixed, 20);
 VM_ASSERT_SIZE(VmInfoFixed, 28);
 VM_ASSERT_SIZE(VmSteadyOutputFixed, 20);
 VM_ASSERT_SIZE(VmFiberCurvesFixed, 12);
 VM_ASSERT_SIZE(VmElementCurvesFixed, 12);
+VM_ASSERT_SIZE(VmPlacedFixed, 20);
+VM_ASSERT_SIZE(VmPostureFixed, 124);
+VM_ASSERT_SIZE(VmProsthesisInputFixed, 12);
+VM_ASSERT_SIZE(VmProsthesisCommandFixed, 24);
+VM_ASSERT_SIZE(VmTargetFixed, 16);
+VM_ASSERT_SIZE(VmSensorsFixed, 8);
+VM_ASSERT_SIZE(VmFesCommandFixed, 40);
 VM_ASSERT_SIZE(VmInputF64, 24);
 VM_ASSERT_SIZE(VmOutputF64, 40);
 VM_ASSERT_SIZE(VmInfoF64, 40);
 VM_ASSERT_SIZE(VmSteadyOutputF64, 40);
 VM_ASSERT_SIZE(VmFiberCurvesF64, 24);
 VM_ASSERT_SIZE(VmElementCurvesF64, 24);
+VM_ASSERT_SIZE(VmPlacedF64, 40);
+VM_ASSERT_SIZE(VmPostureF64, 248);
+VM_ASSERT_SIZE(VmProsthesisInputF64, 24);
+VM_ASSERT_SIZE(VmProsthesisCommandF64, 40);
+VM_ASSERT_SIZE(VmTargetF64, 32);
+VM_ASSERT_SIZE(VmSensorsF64, 16);
+VM_ASSERT_SIZE(VmFesCommandF64, 72);
 VM_ASSERT_SIZE(VmMuscleF32, VM_MUSCLE_F32_SIZE);
 VM_ASSERT_SIZE(VmSteadyF32, VM_STEADY_F32_SIZE);
 VM_ASSERT_SIZE(VmFatigueF32, VM_FATIGUE_F32_SIZE);
 VM_ASSERT_SIZE(VmCurveF32, VM_CURVE_F32_SIZE);
+VM_ASSERT_SIZE(VmJointF32, VM_JOINT_F32_SIZE);
+VM_ASSERT_SIZE(VmProsthesisF32, VM_PROSTHESIS_F32_SIZE);
+VM_ASSERT_SIZE(VmFesF32, VM_FES_F32_SIZE);
 VM_ASSERT_SIZE(VmMuscleFixed, VM_MUSCLE_FIXED_SIZE);
 VM_ASSERT_SIZE(VmSteadyFixed, VM_STEADY_FIXED_SIZE);
 VM_ASSERT_SIZE(VmFatigueFixed, VM_FATIGUE_FIXED_SIZE);
 VM_ASSERT_SIZE(VmCurveFixed, VM_CURVE_FIXED_SIZE);
+VM_ASSERT_SIZE(VmJointFixed, VM_JOINT_FIXED_SIZE);
+VM_ASSERT_SIZE(VmProsthesisFixed, VM_PROSTHESIS_FIXED_SIZE);
+VM_ASSERT_SIZE(VmFesFixed, VM_FES_FIXED_SIZE);
 VM_ASSERT_SIZE(VmMuscleF64, VM_MUSCLE_F64_SIZE);
 VM_ASSERT_SIZE(VmSteadyF64, VM_STEADY_F64_SIZE);
 VM_ASSERT_SIZE(VmFatigueF64, VM_FATIGUE_F64_SIZE);
 VM_ASSERT_SIZE(VmCurveF64, VM_CURVE_F64_SIZE);
+VM_ASSERT_SIZE(VmJointF64, VM_JOINT_F64_SIZE);
+VM_ASSERT_SIZE(VmProsthesisF64, VM_PROSTHESIS_F64_SIZE);
+VM_ASSERT_SIZE(VmFesF64, VM_FES_F64_SIZE);

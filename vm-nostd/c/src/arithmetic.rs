@@ -4,6 +4,8 @@ use model::{Fixed, Input, Output, Pulse, Scalar};
 
 /// An arithmetic with the types that C has for it.
 pub trait Arithmetic: Scalar {
+    /// Tells what is in memory apart: 0 to 255.
+    const TAG: u32;
     /// Length of a path: m, in fixed point um.
     type Path: Copy;
     /// A number: in fixed point 2^-24.
@@ -17,6 +19,8 @@ pub trait Arithmetic: Scalar {
 
     /// A path from C.
     fn path_from(path: Self::Path) -> Self::PathLength;
+    /// A path for C, in fixed point the nearest um.
+    fn path_to(path: Self::PathLength) -> Self::Path;
     /// Shortest and longest path for C, each inside the range.
     fn paths(range: (Self::PathLength, Self::PathLength)) -> (Self::Path, Self::Path);
     /// A number from C, and back.
@@ -42,8 +46,9 @@ pub trait Arithmetic: Scalar {
 
 /// Floating point has C's types.
 macro_rules! floating {
-    ($($S:ty: $word:ty),*) => {
+    ($($S:ty: $word:ty, $tag:literal),*) => {
         $(impl Arithmetic for $S {
+            const TAG: u32 = $tag;
             type Path = $S;
             type Number = $S;
             type Amount = $S;
@@ -51,6 +56,9 @@ macro_rules! floating {
             type Word = $word;
 
             fn path_from(path: $S) -> $S {
+                path
+            }
+            fn path_to(path: $S) -> $S {
                 path
             }
             fn paths(range: ($S, $S)) -> ($S, $S) {
@@ -81,14 +89,15 @@ macro_rules! floating {
     };
 }
 
-floating!(f32: u32);
+floating!(f32: u32, 0x32);
 #[cfg(feature = "f64")]
-floating!(f64: u64);
+floating!(f64: u64, 0x64);
 
 /// Fractional bits of a path in um.
 const PATH_BITS: u32 = 9;
 
 impl Arithmetic for Fixed {
+    const TAG: u32 = 0x24;
     type Path = i32;
     type Number = i32;
     type Amount = i32;
@@ -97,6 +106,10 @@ impl Arithmetic for Fixed {
 
     fn path_from(path: i32) -> Self::PathLength {
         Input::<Fixed>::from_integers(0, path, 0).path_length
+    }
+    fn path_to(path: Self::PathLength) -> i32 {
+        let bits = Self::path_bits(path).cast_signed();
+        bits.saturating_add(1 << (PATH_BITS - 1)) >> PATH_BITS
     }
     fn paths(range: (Self::PathLength, Self::PathLength)) -> (i32, i32) {
         // Whole um inside the range.

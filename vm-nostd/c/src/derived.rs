@@ -55,6 +55,11 @@ fn derived_of<const N: usize>(params: &VmMuscleParams) -> Result<VmDerived, Refu
     })
 }
 
+/// What follows from admitted parameters.
+pub(crate) fn derived_from(params: &VmMuscleParams) -> Result<VmDerived, Refusal> {
+    by_types!(params.fiber_count, Err(VmResult::NotBuilt.into()), derived_of, (params))
+}
+
 /// Validates parameters and computes what follows from them. On VM_RESULT_PARAMETER `error`, which
 /// may be null, has the field, value and limits.
 #[allow(unsafe_code)]
@@ -67,9 +72,7 @@ pub extern "C" fn vm_params_derive(
     let outcome = || -> Result<(), Refusal> {
         Place::optional(error)?;
         let place = Place::new(derived)?;
-        let params = admitted(params)?;
-        let none = Err(VmResult::NotBuilt.into());
-        place.put(by_types!(params.fiber_count, none, derived_of, (params))?);
+        place.put(derived_from(admitted(params)?)?);
         Ok(())
     };
     told(outcome(), error)

@@ -7,7 +7,7 @@ use crate::muscle::keep;
 use crate::params::VmMuscleParams;
 use crate::pointer::{Place, borrow, borrow_mut, places, read, slice};
 use crate::result::{Refusal, VmError, VmResult};
-use crate::slot::{Header, Memory, Slot, bytes};
+use crate::slot::{Header, Memory, Slot, Thing, bytes, mark};
 use model::{
     Fatigue, FatigueParams, FatigueState, RecruitmentCurve, RecruitmentCurveParams, Steady,
     SteadyFes, TimeStep,
@@ -41,6 +41,28 @@ pub struct VmCurveParams {
     pub slope: f64,
 }
 
+impl VmFatigueParams {
+    pub(crate) fn model(&self) -> FatigueParams {
+        FatigueParams {
+            fatigue_time: self.fatigue_time_s,
+            recovery_time: self.recovery_time_s,
+            least_fitness: self.least_fitness,
+            frequency_dependence: self.frequency_dependence,
+        }
+    }
+}
+
+impl VmCurveParams {
+    pub(crate) fn model(&self) -> RecruitmentCurveParams {
+        RecruitmentCurveParams {
+            threshold: self.threshold_a,
+            saturation: self.saturation_a,
+            chronaxie: self.chronaxie_s,
+            slope: self.slope,
+        }
+    }
+}
+
 /// Fatigue with its state.
 pub struct Tiring<S: Arithmetic> {
     fatigue: Fatigue<S>,
@@ -48,9 +70,9 @@ pub struct Tiring<S: Arithmetic> {
 }
 
 /// Memory of fatigue.
-pub type FatigueSlot<S> = Slot<Tiring<S>, 0x564D_4641>;
+pub type FatigueSlot<S> = Slot<Tiring<S>>;
 /// Memory of a curve.
-pub type CurveSlot<S> = Slot<RecruitmentCurve<S>, 0x564D_4355>;
+pub type CurveSlot<S> = Slot<RecruitmentCurve<S>>;
 
 /// Room in C for what is built, if it is large enough.
 fn room<T, U>(memory: *mut T, size: usize) -> Result<Place<U>, Refusal> {
@@ -71,15 +93,19 @@ pub fn build_fatigue<S: Arithmetic, T>(
     let place = room::<T, FatigueSlot<S>>(memory, size)?;
     let params = read(params)?;
     let step = TimeStep::from_seconds(time_step_s)?;
-    let params = FatigueParams {
-        fatigue_time: params.fatigue_time_s,
-        recovery_time: params.recovery_time_s,
-        least_fitness: params.least_fitness,
-        frequency_dependence: params.frequency_dependence,
-    };
-    let fatigue = Fatigue::build(&params, step)?;
-    place.put(Slot::new(Tiring { state: fatigue.rested(), fatigue }));
+    let fatigue = Fatigue::build(&params.model(), step)?;
+    place.put(Slot::new(mark::<S>(Thing::Fatigue), Tiring { state: fatigue.rested(), fatigue }));
     Ok(())
+}
+
+/// Fatigue in memory.
+fn tiring<'a, S: Arithmetic, T>(memory: *mut T) -> Result<&'a mut Tiring<S>, VmResult> {
+    borrow_mut(memory.cast::<FatigueSlot<S>>())?.get_mut(mark::<S>(Thing::Fatigue))
+}
+
+/// A curve in memory.
+fn curve<'a, S: Arithmetic, T>(memory: *const T) -> Result<&'a RecruitmentCurve<S>, VmResult> {
+    borrow(memory.cast::<CurveSlot<S>>())?.get(mark::<S>(Thing::Curve))
 }
 
 /// Advances fatigue by the activation and frequency of a tick.
@@ -90,7 +116,7 @@ pub fn advance_fatigue<S: Arithmetic, T, I: InputOf<S>>(
 ) -> Result<(), VmResult> {
     let place = Place::new(fitness)?;
     let input = read(input)?.input();
-    let tiring = borrow_mut(memory.cast::<FatigueSlot<S>>())?.get_mut()?;
+    let tiring = tiring::<S, _>(memory)?;
     let Tiring { fatigue, state } = tiring;
     let fitness = fatigue.advance(state, input.activation, input.stimulation_frequency);
     place.put(fitness.number());
@@ -104,7 +130,7 @@ pub fn save_fatigue<S: Arithmetic, T>(
     count: usize,
 ) -> Result<(), VmResult> {
     let words = places(words, count)?;
-    let tiring = borrow(memory.cast::<FatigueSlot<S>>())?.get()?;
+    let tiring = borrow(memory.cast::<FatigueSlot<S>>())?.get(mark::<S>(Thing::Fatigue))?;
     let needed = FatigueState::<S>::SAVED_WORDS;
     keep::<S>(tiring.fatigue.save(&tiring.state), needed, words)
 }
@@ -117,7 +143,7 @@ pub fn restore_fatigue<S: Arithmetic, T>(
 ) -> Result<(), VmResult> {
     let words = slice(words, count)?;
     let words = words.get(..FatigueState::<S>::SAVED_WORDS).ok_or(VmResult::Size)?;
-    let tiring = borrow_mut(memory.cast::<FatigueSlot<S>>())?.get_mut()?;
+    let tiring = tiring::<S, _>(memory)?;
     tiring.state = tiring.fatigue.restore(words.iter().map(|&word| word.into()))?;
     Ok(())
 }
@@ -132,13 +158,7 @@ pub fn build_curve<S: Arithmetic, T>(
     Place::optional(error)?;
     let place = room::<T, CurveSlot<S>>(memory, size)?;
     let params = read(params)?;
-    let params = RecruitmentCurveParams {
-        threshold: params.threshold_a,
-        saturation: params.saturation_a,
-        chronaxie: params.chronaxie_s,
-        slope: params.slope,
-    };
-    place.put(Slot::new(RecruitmentCurve::build(&params)?));
+    place.put(Slot::new(mark::<S>(Thing::Curve), RecruitmentCurve::build(&params.model())?));
     Ok(())
 }
 
@@ -150,7 +170,7 @@ pub fn on_curve<S: Arithmetic, T, A>(
     ask: impl FnOnce(&RecruitmentCurve<S>) -> (A, model::PulseStatus),
 ) -> Result<(), VmResult> {
     let (first, second) = (Place::new(answer)?, Place::new(status)?);
-    let (answer, status) = ask(borrow(memory.cast::<CurveSlot<S>>())?.get()?);
+    let (answer, status) = ask(curve::<S, _>(memory)?);
     first.put(answer);
     second.put(status.bits());
     Ok(())
@@ -162,13 +182,12 @@ pub fn curve_checksum<S: Arithmetic, T>(
     checksum: *mut u32,
 ) -> Result<(), VmResult> {
     let place = Place::new(checksum)?;
-    place.put(borrow(memory.cast::<CurveSlot<S>>())?.get()?.checksum());
+    place.put(curve::<S, _>(memory)?.checksum());
     Ok(())
 }
 
 fn build_steady_of<S: Arithmetic, const N: usize>(
     memory: Memory,
-    mark: u32,
     size: usize,
     params: &VmMuscleParams,
 ) -> Result<(), Refusal> {
@@ -177,14 +196,16 @@ fn build_steady_of<S: Arithmetic, const N: usize>(
         return Err(Refusal::Size { size, needed });
     }
     let steady = SteadyFes::<S, N>::build(&params.model::<N>()?)?;
-    memory.put(Header { mark, mode: 1, types: N as u8, class: 0, rested: 1 }, steady);
+    memory.put(
+        Header { mark: mark::<S>(Thing::Steady), mode: 1, types: N as u8, class: 0, rested: 1 },
+        steady,
+    );
     Ok(())
 }
 
 /// Builds an inverse.
 pub fn build_steady<S: Arithmetic, T>(
     memory: *mut T,
-    mark: u32,
     size: usize,
     params: *const VmMuscleParams,
     error: *mut VmError,
@@ -193,7 +214,7 @@ pub fn build_steady<S: Arithmetic, T>(
     let memory = Memory::new(memory)?;
     let params = admitted(params)?;
     let none = Err(VmResult::NotBuilt.into());
-    by_types!(params.fiber_count, none, build_steady_of::<S>, (memory, mark, size, params))
+    by_types!(params.fiber_count, none, build_steady_of::<S>, (memory, size, params))
 }
 
 /// What is asked of an inverse.
@@ -209,7 +230,7 @@ fn ask_steady_of<S: Arithmetic, const N: usize>(
     memory: Memory,
     question: Question<S>,
 ) -> Result<Steady<S>, VmResult> {
-    let steady = memory.muscle::<SteadyFes<S, N>>();
+    let steady = memory.thing::<SteadyFes<S, N>>();
     Ok(match question {
         Question::Force(input) => steady.force(input),
         Question::Activation(force, path, frequency) => {
@@ -221,11 +242,10 @@ fn ask_steady_of<S: Arithmetic, const N: usize>(
 /// Asks an inverse.
 pub fn ask_steady<S: Arithmetic, T>(
     memory: *const T,
-    mark: u32,
     question: Question<S>,
 ) -> Result<Steady<S>, VmResult> {
     let memory = Memory::new(memory.cast_mut())?;
-    let header = memory.header(mark)?;
+    let header = memory.header(mark::<S>(Thing::Steady))?;
     let none = Err(VmResult::NotBuilt);
     by_types!(header.types, none, ask_steady_of::<S>, (memory, question))
 }

@@ -44,31 +44,33 @@ pub struct Held<S: Arithmetic, R: Recruitment<S, N>, const N: usize> {
 }
 
 /// A mode, with what C says of its motor units.
-pub trait Mode<S: Arithmetic, const N: usize>: Recruitment<S, N> {
+pub trait Mode<S: Arithmetic, const N: usize>: Recruitment<S, N> + Sized {
     /// Motor units of a muscle.
     fn units(
         params: &model::MuscleParams<N>,
         units: Option<&VmUnits>,
     ) -> Result<Self::Units, crate::result::Refusal>;
+
+    /// Static stiffness; none with motor units.
+    fn stiffness(held: &Held<S, Self, N>) -> Option<S>;
 }
 
-impl<S: Arithmetic, const N: usize> Mode<S, N> for NaturalContinuous {
-    fn units(
-        _: &model::MuscleParams<N>,
-        _: Option<&VmUnits>,
-    ) -> Result<(), crate::result::Refusal> {
-        Ok(())
-    }
+macro_rules! of_types {
+    ($($mode:ty),*) => {
+        $(impl<S: Arithmetic, const N: usize> Mode<S, N> for $mode {
+            fn units(
+                _: &model::MuscleParams<N>,
+                _: Option<&VmUnits>,
+            ) -> Result<(), crate::result::Refusal> {
+                Ok(())
+            }
+            fn stiffness(held: &Held<S, Self, N>) -> Option<S> {
+                Some(held.muscle.stiffness(&held.state))
+            }
+        })*
+    };
 }
-
-impl<S: Arithmetic, const N: usize> Mode<S, N> for IntramuscularFes {
-    fn units(
-        _: &model::MuscleParams<N>,
-        _: Option<&VmUnits>,
-    ) -> Result<(), crate::result::Refusal> {
-        Ok(())
-    }
-}
+of_types!(NaturalContinuous, IntramuscularFes);
 
 /// Capacity of a muscle of motor units.
 #[cfg(feature = "units")]
@@ -91,6 +93,9 @@ macro_rules! of_units {
             ) -> Result<MotorUnits<UNITS>, crate::result::Refusal> {
                 crate::units::motor_units(params, units)
             }
+            fn stiffness(_: &Held<S, Self, N>) -> Option<S> {
+                None
+            }
         })*
     };
 }
@@ -100,24 +105,40 @@ of_units!(Discrete, Effective);
 /// Calls `$call::<S, N>` (or `$call::<N>`) for a number of types; `$none` if this library does not
 /// have it.
 macro_rules! by_types {
-    ($types:expr, $none:expr, $call:ident $(::<$S:ty>)?, ($($argument:expr),*)) => {
+    ($types:expr, $none:expr, $call:ident $(::<$($S:ty),+>)?, ($($argument:expr),*)) => {
         match $types {
-            2 => $call::<$($S,)? 2>($($argument),*),
+            2 => $call::<$($($S,)+)? 2>($($argument),*),
             #[cfg(feature = "types")]
-            1 => $call::<$($S,)? 1>($($argument),*),
+            1 => $call::<$($($S,)+)? 1>($($argument),*),
             #[cfg(feature = "types")]
-            3 => $call::<$($S,)? 3>($($argument),*),
+            3 => $call::<$($($S,)+)? 3>($($argument),*),
             #[cfg(feature = "types")]
-            4 => $call::<$($S,)? 4>($($argument),*),
+            4 => $call::<$($($S,)+)? 4>($($argument),*),
             #[cfg(feature = "types")]
-            5 => $call::<$($S,)? 5>($($argument),*),
+            5 => $call::<$($($S,)+)? 5>($($argument),*),
             #[cfg(feature = "types")]
-            6 => $call::<$($S,)? 6>($($argument),*),
+            6 => $call::<$($($S,)+)? 6>($($argument),*),
             _ => $none,
         }
     };
 }
 pub(crate) use by_types;
+
+/// Calls a macro for each number of types of this library.
+macro_rules! each_number_of_types {
+    ($each:ident) => {
+        $each!(2);
+        #[cfg(feature = "types")]
+        {
+            $each!(1);
+            $each!(3);
+            $each!(4);
+            $each!(5);
+            $each!(6);
+        }
+    };
+}
+pub(crate) use each_number_of_types;
 
 /// Calls `$call::<S, mode, N>` for a mode and a number of types; `$none` if this library does not
 /// have it.

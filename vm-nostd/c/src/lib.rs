@@ -7,6 +7,9 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 mod arithmetic;
+mod choice;
+mod control;
+mod control_functions;
 mod derived;
 mod extra_functions;
 mod extras;
@@ -14,6 +17,7 @@ mod f32;
 #[cfg(feature = "f64")]
 mod f64;
 mod fixed;
+mod floating;
 mod functions;
 mod kinds;
 mod muscle;
@@ -26,6 +30,7 @@ mod result;
 mod sizes;
 mod slot;
 mod status;
+mod template;
 mod units;
 
 /// Unreachable: no code path panics.

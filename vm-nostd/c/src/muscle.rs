@@ -6,7 +6,7 @@ use crate::kinds::{Held, Mode, VmMode, by_kind, mode_of};
 use crate::params::{VM_CLASS_ECONOMY, VM_CLASS_FINE, VM_CLASS_STANDARD, VmMuscleParams};
 use crate::pointer::{Place, borrow, places, read, slice};
 use crate::result::{Refusal, VmError, VmResult};
-use crate::slot::{Header, Memory, bytes};
+use crate::slot::{Header, Memory, Thing, bytes, mark};
 use crate::units::VmUnits;
 use core::mem::MaybeUninit;
 use model::{Muscle, State, TimeStep};
@@ -37,7 +37,6 @@ pub struct Order {
 
 fn build_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     memory: Memory,
-    mark: u32,
     mode: VmMode,
     params: &VmMuscleParams,
     order: &Order,
@@ -55,7 +54,7 @@ fn build_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     let state = muscle.rest(S::path_length(model.middle_path()))?;
     // All three fit a byte: they have been checked.
     let header = Header {
-        mark,
+        mark: mark::<S>(Thing::Muscle),
         mode: mode as u8,
         types: N as u8,
         class: params.accuracy_class as u8,
@@ -66,19 +65,13 @@ fn build_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
 }
 
 /// Builds a muscle in memory.
-pub fn build<S: Arithmetic, T>(memory: *mut T, mark: u32, order: &Order) -> Result<(), Refusal> {
+pub fn build<S: Arithmetic, T>(memory: *mut T, order: &Order) -> Result<(), Refusal> {
     Place::optional(order.error)?;
     let memory = Memory::new(memory)?;
     let params = admitted(order.params)?;
     let mode = mode_of(order.mode)?;
     let none = Err(VmResult::NotBuilt.into());
-    by_kind!(
-        params.fiber_count,
-        order.mode,
-        none,
-        build_kind::<S>,
-        (memory, mark, mode, params, order)
-    )
+    by_kind!(params.fiber_count, order.mode, none, build_kind::<S>, (memory, mode, params, order))
 }
 
 /// A muscle in memory.
@@ -88,14 +81,14 @@ struct Built {
 }
 
 impl Built {
-    fn new<T>(memory: *mut T, mark: u32) -> Result<Self, VmResult> {
+    fn new<S: Arithmetic, T>(memory: *mut T) -> Result<Self, VmResult> {
         let memory = Memory::new(memory)?;
-        Ok(Self { memory, header: memory.header(mark)? })
+        Ok(Self { memory, header: memory.header(mark::<S>(Thing::Muscle))? })
     }
 
     /// One with a state.
-    fn rested<T>(memory: *mut T, mark: u32) -> Result<Self, VmResult> {
-        let built = Self::new(memory, mark)?;
+    fn rested<S: Arithmetic, T>(memory: *mut T) -> Result<Self, VmResult> {
+        let built = Self::new::<S, _>(memory)?;
         if built.header.rested == 1 { Ok(built) } else { Err(VmResult::NotRested) }
     }
 }
@@ -118,53 +111,68 @@ fn rest_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
     path: S::PathLength,
 ) -> Result<(), VmResult> {
-    let held = built.memory.muscle::<Held<S, R, N>>();
+    let held = built.memory.thing::<Held<S, R, N>>();
     held.state = held.muscle.rest(path).map_err(|_| VmResult::Parameter)?;
     built.memory.rested(built.header);
     Ok(())
 }
 
 /// Puts a muscle at rest.
-pub fn rest<S: Arithmetic, T>(memory: *mut T, mark: u32, path: S::Path) -> Result<(), VmResult> {
-    on!(Built::new(memory, mark)?, rest_kind::<S>(S::path_from(path)))
+pub fn rest<S: Arithmetic, T>(memory: *mut T, path: S::Path) -> Result<(), VmResult> {
+    on!(Built::new::<S, _>(memory)?, rest_kind::<S>(S::path_from(path)))
 }
 
 fn step_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
     input: model::Input<S>,
 ) -> Result<model::Output<S>, VmResult> {
-    let held = built.memory.muscle::<Held<S, R, N>>();
+    let held = built.memory.thing::<Held<S, R, N>>();
     Ok(held.muscle.step(&mut held.state, input))
 }
 
 /// Steps a muscle.
 pub fn step<S: Arithmetic, T, I: InputOf<S>, O: OutputOf<S>>(
     memory: *mut T,
-    mark: u32,
     input: *const I,
     output: *mut O,
 ) -> Result<(), VmResult> {
     let place = Place::new(output)?;
     let input = read(input)?.input();
-    place.put(O::of(on!(Built::rested(memory, mark)?, step_kind::<S>(input))?));
+    place.put(O::of(on!(Built::rested::<S, _>(memory)?, step_kind::<S>(input))?));
     Ok(())
 }
 
 fn observe_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
 ) -> Result<model::Output<S>, VmResult> {
-    let held = built.memory.muscle::<Held<S, R, N>>();
+    let held = built.memory.thing::<Held<S, R, N>>();
     Ok(held.muscle.observe(&held.state))
 }
 
 /// The state as an output.
 pub fn observe<S: Arithmetic, T, O: OutputOf<S>>(
     memory: *const T,
-    mark: u32,
     output: *mut O,
 ) -> Result<(), VmResult> {
     let place = Place::new(output)?;
-    place.put(O::of(on!(Built::rested(memory.cast_mut(), mark)?, observe_kind::<S>())?));
+    place.put(O::of(on!(Built::rested::<S, _>(memory.cast_mut())?, observe_kind::<S>())?));
+    Ok(())
+}
+
+fn stiffness_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
+    built: &Built,
+) -> Result<S, VmResult> {
+    R::stiffness(built.memory.thing::<Held<S, R, N>>()).ok_or(VmResult::Parameter)
+}
+
+/// Static stiffness of a muscle.
+pub fn stiffness<S: Arithmetic, T>(
+    memory: *const T,
+    stiffness: *mut S::Number,
+) -> Result<(), VmResult> {
+    let place = Place::new(stiffness)?;
+    let found = on!(Built::rested::<S, _>(memory.cast_mut())?, stiffness_kind::<S>())?;
+    place.put(found.number());
     Ok(())
 }
 
@@ -181,7 +189,7 @@ pub struct Facts<S: Arithmetic> {
 fn facts_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
 ) -> Result<Facts<S>, VmResult> {
-    let muscle = &built.memory.muscle::<Held<S, R, N>>().muscle;
+    let muscle = &built.memory.thing::<Held<S, R, N>>().muscle;
     Ok(Facts {
         force: <S as Arithmetic>::newtons(muscle.max_isometric_force()),
         paths: S::paths(muscle.path_length_range()),
@@ -197,8 +205,8 @@ fn facts_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
 }
 
 /// What a muscle says of itself.
-pub fn facts<S: Arithmetic, T>(memory: *const T, mark: u32) -> Result<Facts<S>, VmResult> {
-    on!(Built::new(memory.cast_mut(), mark)?, facts_kind::<S>())
+pub fn facts<S: Arithmetic, T>(memory: *const T) -> Result<Facts<S>, VmResult> {
+    on!(Built::new::<S, _>(memory.cast_mut())?, facts_kind::<S>())
 }
 
 /// Copies words to C, of which there must be room for `needed`.
@@ -220,26 +228,25 @@ fn save_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
     places: &mut [MaybeUninit<S::Word>],
 ) -> Result<(), VmResult> {
-    let held = built.memory.muscle::<Held<S, R, N>>();
+    let held = built.memory.thing::<Held<S, R, N>>();
     keep::<S>(held.muscle.save(&held.state), State::<S, R, N>::SAVED_WORDS, places)
 }
 
 /// Saves a state.
 pub fn save<S: Arithmetic, T>(
     memory: *const T,
-    mark: u32,
     words: *mut S::Word,
     count: usize,
 ) -> Result<(), VmResult> {
     let words = places(words, count)?;
-    on!(Built::rested(memory.cast_mut(), mark)?, save_kind::<S>(words))
+    on!(Built::rested::<S, _>(memory.cast_mut())?, save_kind::<S>(words))
 }
 
 fn restore_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
     words: &[S::Word],
 ) -> Result<(), VmResult> {
-    let held = built.memory.muscle::<Held<S, R, N>>();
+    let held = built.memory.thing::<Held<S, R, N>>();
     let words = words.get(..State::<S, R, N>::SAVED_WORDS).ok_or(VmResult::Size)?;
     held.state = held.muscle.restore(words.iter().map(|&word| word.into()))?;
     built.memory.rested(built.header);
@@ -249,35 +256,33 @@ fn restore_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
 /// Restores a state.
 pub fn restore<S: Arithmetic, T>(
     memory: *mut T,
-    mark: u32,
     words: *const S::Word,
     count: usize,
 ) -> Result<(), VmResult> {
     let words = slice(words, count)?;
-    on!(Built::new(memory, mark)?, restore_kind::<S>(words))
+    on!(Built::new::<S, _>(memory)?, restore_kind::<S>(words))
 }
 
 fn coefficients_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
 ) -> Result<u32, VmResult> {
-    Ok(built.memory.muscle::<Held<S, R, N>>().muscle.checksum())
+    Ok(built.memory.thing::<Held<S, R, N>>().muscle.checksum())
 }
 
 fn state_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     built: &Built,
 ) -> Result<u32, VmResult> {
-    Ok(built.memory.muscle::<Held<S, R, N>>().state.checksum())
+    Ok(built.memory.thing::<Held<S, R, N>>().state.checksum())
 }
 
 /// Checksums of coefficients and state.
 pub fn checksums<S: Arithmetic, T>(
     memory: *const T,
-    mark: u32,
     coefficients: *mut u32,
     state: *mut u32,
 ) -> Result<(), VmResult> {
     let (first, second) = (Place::new(coefficients)?, Place::new(state)?);
-    let built = Built::rested(memory.cast_mut(), mark)?;
+    let built = Built::rested::<S, _>(memory.cast_mut())?;
     let sums = (on!(built, coefficients_kind::<S>())?, on!(built, state_kind::<S>())?);
     first.put(sums.0);
     second.put(sums.1);
@@ -289,7 +294,7 @@ fn fiber_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     fiber: u32,
     at: [S; 3],
 ) -> Result<[S; 3], VmResult> {
-    let curves = built.memory.muscle::<Held<S, R, N>>().muscle.curves();
+    let curves = built.memory.thing::<Held<S, R, N>>().muscle.curves();
     let curves = curves.fiber(fiber as usize).ok_or(VmResult::Parameter)?;
     let [length, velocity, frequency] = at;
     Ok([
@@ -302,11 +307,10 @@ fn fiber_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
 /// FL, FV and Af of a fibre type at a length, a velocity and a frequency.
 pub fn fiber_curves<S: Arithmetic, T>(
     memory: *const T,
-    mark: u32,
     fiber: u32,
     at: [S; 3],
 ) -> Result<[S; 3], VmResult> {
-    on!(Built::new(memory.cast_mut(), mark)?, fiber_curves_kind::<S>(fiber, at))
+    on!(Built::new::<S, _>(memory.cast_mut())?, fiber_curves_kind::<S>(fiber, at))
 }
 
 fn element_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
@@ -314,16 +318,15 @@ fn element_curves_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     length: S,
     path: S::PathLength,
 ) -> Result<[S; 3], VmResult> {
-    let curves = built.memory.muscle::<Held<S, R, N>>().muscle.curves();
+    let curves = built.memory.thing::<Held<S, R, N>>().muscle.curves();
     Ok([curves.passive(length), curves.compression(length), curves.tendon(path, length)])
 }
 
 /// F_pe1, F_pe2 and F_se at a fascicle length on a path.
 pub fn element_curves<S: Arithmetic, T>(
     memory: *const T,
-    mark: u32,
     length: S,
     path: S::PathLength,
 ) -> Result<[S; 3], VmResult> {
-    on!(Built::new(memory.cast_mut(), mark)?, element_curves_kind::<S>(length, path))
+    on!(Built::new::<S, _>(memory.cast_mut())?, element_curves_kind::<S>(length, path))
 }

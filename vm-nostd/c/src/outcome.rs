@@ -8,7 +8,10 @@ pub fn told(outcome: Result<(), Refusal>, error: *mut VmError) -> VmResult {
     let Err(refusal) = outcome else { return VmResult::Ok };
     let (result, details) = match refusal {
         Refusal::Result(result) => (result, None),
-        Refusal::Parameter(refused) => (VmResult::Parameter, Some(VmError::from(refused))),
+        Refusal::Parameter(refused) => {
+            let details = VmError::from(refused.error).of_muscle(refused.muscle);
+            (VmResult::Parameter, Some(details))
+        }
         Refusal::Size { size, needed } => (VmResult::Size, Some(VmError::size(size, needed))),
     };
     // A place that cannot be written was refused before.

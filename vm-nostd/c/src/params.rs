@@ -1,8 +1,9 @@
 //! Parameters in C.
 
+use crate::choice::{FLAG, choice};
 use model::{
     ActivationParams, Class, CompressionParams, ElementParams, ExcitationParams, FiberParams,
-    FiberType, ForceLengthParams, ForceVelocityParams, Limit, MuscleParams, ParallelParams,
+    FiberType, ForceLengthParams, ForceVelocityParams, MuscleParams, ParallelParams,
     ParameterError, SagParams, TendonParams, YieldParams, paper_table_1,
 };
 
@@ -153,19 +154,12 @@ impl VmMuscleParams {
         for (index, (place, fiber)) in fibers.iter_mut().zip(&self.fibers).enumerate() {
             *place = fiber.model(index)?;
         }
-        let class = match self.accuracy_class {
-            VM_CLASS_STANDARD => Class::Standard,
-            VM_CLASS_ECONOMY => Class::Economy,
-            VM_CLASS_FINE => Class::Fine,
-            other => {
-                return Err(ParameterError {
-                    field: "accuracy_class",
-                    fiber: None,
-                    value: other.into(),
-                    limit: Limit::Within { least: 0.0, most: 2.0 },
-                });
-            }
-        };
+        let classes = [
+            (VM_CLASS_STANDARD, Class::Standard),
+            (VM_CLASS_ECONOMY, Class::Economy),
+            (VM_CLASS_FINE, Class::Fine),
+        ];
+        let class = choice("accuracy_class", self.accuracy_class, &classes)?;
         Ok(MuscleParams {
             mass: self.mass_kg,
             fascicle_length: self.fascicle_length_m,
@@ -219,15 +213,9 @@ impl From<&ElementParams> for VmElements {
 
 impl VmFiber {
     fn model(&self, index: usize) -> Result<FiberParams, ParameterError> {
-        let flag = |field, value: u8| match value {
-            0 => Ok(false),
-            1 => Ok(true),
-            other => Err(ParameterError {
-                field,
-                fiber: Some(index),
-                value: other.into(),
-                limit: Limit::Within { least: 0.0, most: 1.0 },
-            }),
+        let flag = |field, value: u8| {
+            choice(field, value.into(), &FLAG)
+                .map_err(|error| ParameterError { fiber: Some(index), ..error })
         };
         let sags = flag("has_sag", self.has_sag)?;
         let yields = flag("has_yield", self.has_yield)?;

@@ -2,6 +2,7 @@
 
 use crate::names;
 use core::ffi::c_char;
+use model::control::JointError;
 use model::{Limit, ParameterError, RestoreError};
 
 /// Result of a function: VM_RESULT_OK (0), or an error that has changed nothing.
@@ -20,11 +21,11 @@ pub enum VmResult {
     Parameter = 4,
     /// The words are out of range for this muscle.
     State = 5,
-    /// The words are of another muscle, mode or time step.
+    /// The words are of another muscle, controller, mode or time step.
     OtherMuscle = 6,
     /// A pointer is not aligned for its type.
     Alignment = 7,
-    /// The muscle has no state yet: call rest or restore first.
+    /// There is no state yet: call rest, start or restore first.
     NotRested = 8,
     /// VmMuscleParams.version is not VM_VERSION of this library.
     Version = 9,
@@ -41,6 +42,8 @@ pub struct VmError {
     pub field: [c_char; VM_FIELD_SIZE],
     /// Index of the fibre type; -1 for all else.
     pub fiber: i32,
+    /// Index of the muscle of a joint or controller; -1 for all else.
+    pub muscle: i32,
     /// The refused value, in the field's unit.
     pub value: f64,
     /// Least allowed value, in the field's unit.
@@ -59,12 +62,18 @@ impl VmError {
         }
         // Types are few.
         let fiber = fiber.map_or(-1, |index| index as i32);
-        Self { field, fiber, value, least: limits.0, most: limits.1 }
+        Self { field, fiber, muscle: -1, value, least: limits.0, most: limits.1 }
     }
 
     /// Memory of `size`, where `needed` is needed.
     pub(crate) fn size(size: usize, needed: usize) -> Self {
         Self::new(["size", ""], None, size as f64, (needed as f64, f64::INFINITY))
+    }
+
+    /// Of a muscle of a joint or controller.
+    pub(crate) fn of_muscle(mut self, muscle: Option<usize>) -> Self {
+        self.muscle = muscle.map_or(-1, |index| index as i32);
+        self
     }
 }
 
@@ -94,8 +103,8 @@ impl From<RestoreError> for VmResult {
 pub enum Refusal {
     /// Without details.
     Result(VmResult),
-    /// With details.
-    Parameter(ParameterError),
+    /// With details, and the muscle of a joint or controller.
+    Parameter(JointError),
     /// Memory of `size`, where `needed` is needed.
     Size { size: usize, needed: usize },
 }
@@ -108,6 +117,24 @@ impl From<VmResult> for Refusal {
 
 impl From<ParameterError> for Refusal {
     fn from(error: ParameterError) -> Self {
+        Self::Parameter(JointError { muscle: None, error })
+    }
+}
+
+impl From<JointError> for Refusal {
+    fn from(error: JointError) -> Self {
         Self::Parameter(error)
+    }
+}
+
+impl Refusal {
+    /// The refusal of a muscle of a joint or controller.
+    pub fn of_muscle(self, muscle: usize) -> Self {
+        match self {
+            Self::Parameter(refused) => {
+                Self::Parameter(JointError { muscle: Some(muscle), ..refused })
+            }
+            other => other,
+        }
     }
 }

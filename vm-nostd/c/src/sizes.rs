@@ -7,14 +7,28 @@ macro_rules! sizes {
     };
 }
 
+use crate::control::VmControlInfo;
+use crate::control::fes_params::{VmFeedback, VmFesParams, VmGain, VmLimb, VmModulation};
+use crate::control::joint_params::{VmAngleRange, VmJointMuscle, VmJointParams, VmPath};
+use crate::control::prosthesis_params::{
+    VmEnvelope, VmProsthesisParams, VmStiffnessLimits, VmTorqueLimits,
+};
 use crate::derived::VmDerived;
 use crate::extras::{VmCurveParams, VmFatigueParams};
 use crate::f32::{
-    VmElementCurvesF32, VmFiberCurvesF32, VmInfoF32, VmInputF32, VmOutputF32, VmSteadyOutputF32,
+    VmElementCurvesA as VmElementCurvesF32, VmFesCommandA as VmFesCommandF32,
+    VmFiberCurvesA as VmFiberCurvesF32, VmInfoA as VmInfoF32, VmInputA as VmInputF32,
+    VmOutputA as VmOutputF32, VmPlacedA as VmPlacedF32, VmPostureA as VmPostureF32,
+    VmProsthesisCommandA as VmProsthesisCommandF32, VmProsthesisInputA as VmProsthesisInputF32,
+    VmSensorsA as VmSensorsF32, VmSteadyOutputA as VmSteadyOutputF32, VmTargetA as VmTargetF32,
 };
 use crate::fixed::{
-    VmElementCurvesFixed, VmFiberCurvesFixed, VmInfoFixed, VmInputFixed, VmOutputFixed,
-    VmSteadyOutputFixed,
+    VmElementCurvesA as VmElementCurvesFixed, VmFesCommandA as VmFesCommandFixed,
+    VmFiberCurvesA as VmFiberCurvesFixed, VmInfoA as VmInfoFixed, VmInputA as VmInputFixed,
+    VmOutputA as VmOutputFixed, VmPlacedA as VmPlacedFixed, VmPostureA as VmPostureFixed,
+    VmProsthesisCommandA as VmProsthesisCommandFixed, VmProsthesisInputA as VmProsthesisInputFixed,
+    VmSensorsA as VmSensorsFixed, VmSteadyOutputA as VmSteadyOutputFixed,
+    VmTargetA as VmTargetFixed,
 };
 use crate::params::{VmElements, VmFiber, VmMuscleParams};
 use crate::result::VmError;
@@ -30,23 +44,55 @@ sizes! {
     VmUnits = 144,
     VmFatigueParams = 32,
     VmCurveParams = 32,
+    VmAngleRange = 16,
+    VmPath = 136,
+    VmJointMuscle = 168,
+    VmJointParams = 1056,
+    VmEnvelope = 40,
+    VmTorqueLimits = 24,
+    VmStiffnessLimits = 24,
+    VmProsthesisParams = 3504,
+    VmLimb = 32,
+    VmModulation = 24,
+    VmFeedback = 40,
+    VmGain = 32,
+    VmFesParams = 3728,
+    VmControlInfo = 8,
     VmInputF32 = 12,
     VmOutputF32 = 20,
     VmInfoF32 = 28,
     VmSteadyOutputF32 = 20,
     VmFiberCurvesF32 = 12,
     VmElementCurvesF32 = 12,
+    VmPlacedF32 = 20,
+    VmPostureF32 = 124,
+    VmProsthesisInputF32 = 12,
+    VmProsthesisCommandF32 = 24,
+    VmTargetF32 = 16,
+    VmSensorsF32 = 8,
+    VmFesCommandF32 = 40,
     VmInputFixed = 8,
     VmOutputFixed = 20,
     VmInfoFixed = 28,
     VmSteadyOutputFixed = 20,
     VmFiberCurvesFixed = 12,
     VmElementCurvesFixed = 12,
+    VmPlacedFixed = 20,
+    VmPostureFixed = 124,
+    VmProsthesisInputFixed = 12,
+    VmProsthesisCommandFixed = 24,
+    VmTargetFixed = 16,
+    VmSensorsFixed = 8,
+    VmFesCommandFixed = 40,
 }
 
 #[cfg(feature = "f64")]
 use crate::f64::{
-    VmElementCurvesF64, VmFiberCurvesF64, VmInfoF64, VmInputF64, VmOutputF64, VmSteadyOutputF64,
+    VmElementCurvesA as VmElementCurvesF64, VmFesCommandA as VmFesCommandF64,
+    VmFiberCurvesA as VmFiberCurvesF64, VmInfoA as VmInfoF64, VmInputA as VmInputF64,
+    VmOutputA as VmOutputF64, VmPlacedA as VmPlacedF64, VmPostureA as VmPostureF64,
+    VmProsthesisCommandA as VmProsthesisCommandF64, VmProsthesisInputA as VmProsthesisInputF64,
+    VmSensorsA as VmSensorsF64, VmSteadyOutputA as VmSteadyOutputF64, VmTargetA as VmTargetF64,
 };
 
 #[cfg(feature = "f64")]
@@ -57,4 +103,11 @@ sizes! {
     VmSteadyOutputF64 = 40,
     VmFiberCurvesF64 = 24,
     VmElementCurvesF64 = 24,
+    VmPlacedF64 = 40,
+    VmPostureF64 = 248,
+    VmProsthesisInputF64 = 24,
+    VmProsthesisCommandF64 = 40,
+    VmTargetF64 = 32,
+    VmSensorsF64 = 16,
+    VmFesCommandF64 = 72,
 }

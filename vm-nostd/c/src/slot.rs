@@ -1,35 +1,59 @@
 //! Memory owned by C, and what was built in it.
 
+use crate::arithmetic::Arithmetic;
 use crate::result::VmResult;
 use core::mem::MaybeUninit;
 
-/// Memory for one thing: a mark, and the thing if the mark is set. `MARK` differs by thing and
-/// arithmetic.
+/// What may be in memory.
+#[derive(Clone, Copy, Debug)]
+pub enum Thing {
+    /// A muscle and its state.
+    Muscle = 0x4D00,
+    /// An inverse.
+    Steady = 0x5300,
+    /// Fatigue.
+    Fatigue = 0x4600,
+    /// A recruitment curve.
+    Curve = 0x4300,
+    /// A joint.
+    Joint = 0x4A00,
+    /// A prosthesis and its state.
+    Prosthesis = 0x5000,
+    /// An FES controller and its state.
+    Fes = 0x4500,
+}
+
+/// Mark of a thing in an arithmetic.
+pub const fn mark<S: Arithmetic>(thing: Thing) -> u32 {
+    0x564D_0000 | thing as u32 | S::TAG
+}
+
+/// Memory for one thing: a mark, and the thing if the mark is set.
 #[repr(C, align(8))]
-pub struct Slot<T, const MARK: u32> {
+pub struct Slot<T> {
     mark: u32,
     thing: MaybeUninit<T>,
 }
 
-impl<T, const MARK: u32> Slot<T, MARK> {
+impl<T> Slot<T> {
     /// What is put into memory.
-    pub fn new(thing: T) -> Self {
-        Self { mark: MARK, thing: MaybeUninit::new(thing) }
+    pub fn new(mark: u32, thing: T) -> Self {
+        Self { mark, thing: MaybeUninit::new(thing) }
     }
 
-    /// The thing, if there is one.
-    pub fn get(&self) -> Result<&T, VmResult> {
-        if self.mark != MARK {
+    /// The thing, if there is one with this mark.
+    pub fn get(&self, mark: u32) -> Result<&T, VmResult> {
+        if self.mark != mark {
             return Err(VmResult::NotBuilt);
         }
-        // SAFETY: the mark is written only together with the thing.
+        // SAFETY: the mark is written only together with the thing, and tells its type.
         #[allow(unsafe_code)]
         Ok(unsafe { self.thing.assume_init_ref() })
     }
 
     /// The thing, to be changed.
-    pub fn get_mut(&mut self) -> Result<&mut T, VmResult> {
-        if self.mark != MARK {
+    pub fn get_mut(&mut self, mark: u32) -> Result<&mut T, VmResult> {
+        if self.mark != mark {
             return Err(VmResult::NotBuilt);
         }
         // SAFETY: as above.
@@ -38,19 +62,19 @@ impl<T, const MARK: u32> Slot<T, MARK> {
     }
 }
 
-/// What a muscle's memory begins with.
+/// What memory begins with whose size is chosen when it is built.
 #[repr(C, align(8))]
 #[derive(Clone, Copy, Debug)]
 pub struct Header {
     /// Set together with a muscle; differs by arithmetic.
     pub mark: u32,
-    /// VmMode.
+    /// VmMode; number of angles of a joint.
     pub mode: u8,
-    /// Number of fibre types.
+    /// Number of fibre types; of muscles of a joint.
     pub types: u8,
     /// Accuracy class.
     pub class: u8,
-    /// 1 as soon as the muscle has a state.
+    /// 1 as soon as there is a state.
     pub rested: u8,
 }
 
@@ -92,7 +116,7 @@ impl Memory {
     }
 
     /// The muscle that the header says is here.
-    pub fn muscle<'a, T>(self) -> &'a mut T {
+    pub fn thing<'a, T>(self) -> &'a mut T {
         // SAFETY: the header has the arithmetic's mark, and its mode and number of types have
         // chosen T, as when it was written. No other reference exists during a call.
         #[allow(unsafe_code)]
@@ -106,4 +130,11 @@ impl Memory {
 pub const fn bytes<T>() -> usize {
     assert!(align_of::<T>() <= 8);
     (size_of::<Header>() + size_of::<T>()).next_multiple_of(8)
+}
+
+/// The header's sizes have room for what is built, and waste little: 128 bytes for each thing in
+/// it that has a size of its own.
+pub const fn fits(needed: usize, given: usize, things: usize) {
+    assert!(needed <= given, "the model has grown: raise the sizes of the arithmetic's file");
+    assert!(given <= needed + 128 * things, "the model has shrunk: lower the sizes");
 }

@@ -10,6 +10,7 @@
 //! the nearest one is found by bisection; if the tendon is so long that there may be several
 //! equilibria, the result is checked by bisection.
 
+use crate::checksum::summed;
 use crate::domain::Domain;
 use crate::equations::activation_frequency::{self, ActivationFrequency};
 use crate::equations::force_length::{self, ForceLength, OptimalLength};
@@ -86,6 +87,9 @@ struct SteadyFiber<S: Scalar> {
     /// 1/f0.5, s.
     per_half_force_frequency: S::Factor,
 }
+
+summed!([S: Scalar] SteadyFiber<S> { fraction, activation, force_length, sag, per_half_force_frequency });
+summed!([S: Scalar, const N: usize] SteadyFes<S, N> { domain, optimal_length, fibers, parallel, compression, tendon, tendon_inverse, firing, rounding, rounding_of_force, promised, ambiguous, force, per_force });
 
 /// A steady state.
 #[derive(Clone, Copy, Debug, PartialEq)]

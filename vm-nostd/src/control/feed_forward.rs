@@ -21,10 +21,10 @@ pub(super) struct Inverse<S: Scalar, const N: usize> {
     pub(super) least_fitness: S,
 }
 
-/// `SteadyFes` follows from what the joint and the parameters' checksum hold already.
 impl<S: Scalar, const N: usize> Summed for Inverse<S, N> {
     fn sum(&self, checksum: &mut Checksum) {
-        let Self { steady: _, lead, fatigue, least_fitness } = self;
+        let Self { steady, lead, fatigue, least_fitness } = self;
+        steady.sum(checksum);
         lead.sum(checksum);
         if let Some(fatigue) = fatigue {
             fatigue.sum(checksum);

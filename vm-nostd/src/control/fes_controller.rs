@@ -200,6 +200,11 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let of = |muscle: usize| move |error| JointError { muscle: Some(muscle), error };
         let own = |error: ParameterError| JointError { muscle: None, error };
         params.validate_own().map_err(own)?;
+        for (index, muscle) in params.muscles.iter().enumerate() {
+            // Before the joint, which would name what follows from a muscle's fields.
+            muscle.validate().map_err(of(index))?;
+            params.modulation[index].validate().map_err(of(index))?;
+        }
         let placed = [0, 1].map(|i| JointMuscle::new(&params.muscles[i], params.paths[i]));
         let joint = Joint::build(&[params.range], &placed)?;
         let frequency = params.stimulation_frequency;
@@ -414,6 +419,13 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             Learnt::Frozen => ControlStatus::GAIN_FROZEN,
             Learnt::Refused => ControlStatus::GAIN_REFUSED,
         }
+    }
+
+    /// Checksum of all coefficients.
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.sum(&mut checksum);
+        checksum.value()
     }
 
     /// Words of a saved state of this controller.

@@ -33,6 +33,15 @@ pub enum Modulation {
     },
 }
 
+impl Modulation {
+    pub(super) fn validate(&self) -> Result<(), ParameterError> {
+        match *self {
+            Self::Width { amplitude } => within("modulation.amplitude", amplitude, 1e-4, 0.2),
+            Self::Amplitude { width } => within("modulation.width", width, 2e-5, 1e-3),
+        }
+    }
+}
+
 /// Parameters of a controller; pairs are flexor and extensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FesControllerParams<const N: usize> {
@@ -81,15 +90,6 @@ impl<const N: usize> FesControllerParams<N> {
         within("expected_lag", self.expected_lag, 1e-3, 1.0)?;
         within("least_fitness", self.least_fitness, 0.1, 1.0)?;
         within("torque.0", self.torque.0, -1e3, 0.0)?;
-        within("torque.1", self.torque.1, 0.0, 1e3)?;
-        for modulation in self.modulation {
-            match modulation {
-                Modulation::Width { amplitude } => {
-                    within("modulation.amplitude", amplitude, 1e-4, 0.2)?;
-                }
-                Modulation::Amplitude { width } => within("modulation.width", width, 2e-5, 1e-3)?,
-            }
-        }
-        Ok(())
+        within("torque.1", self.torque.1, 0.0, 1e3)
     }
 }

@@ -9,7 +9,7 @@ use super::joint::{Joint, JointError, JointMuscle, JointStatus, TORQUE_UNIT};
 use super::limit::{CommandLimits, Limited, Limiter};
 use super::path::{AngleRange, PathParams};
 use super::saved::{Parts, fingerprint};
-use crate::checksum::summed;
+use crate::checksum::{Checksum, Summed, summed};
 use crate::error::ParameterError;
 use crate::io::Input;
 use crate::muscle::ContinuousMuscle;
@@ -212,6 +212,13 @@ impl<S: Scalar, const N: usize, const D: usize> Prosthesis<S, N, D> {
             muscles: flags,
             status,
         }
+    }
+
+    /// Checksum of all coefficients.
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.sum(&mut checksum);
+        checksum.value()
     }
 
     /// The [`ProsthesisState::SAVED_WORDS`] words of a saved state: a fingerprint of the

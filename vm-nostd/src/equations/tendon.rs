@@ -81,6 +81,8 @@ pub(crate) struct TendonInverse<S: Scalar> {
     toe: S::Factor,
 }
 
+summed!([S: Scalar] TendonInverse<S> { per_force, toe });
+
 impl<S: Scalar> TendonInverse<S> {
     pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {
         Self {
