@@ -59,7 +59,7 @@ def compile_unit(library, output, sources, *arguments):
 def variables(library, folder):
     """Rows of the table in muscle.c."""
     program = Path(folder) / "describe"
-    compile_unit(library, program, ["muscle.c", "describe.c"])
+    compile_unit(library, program, ["muscle.c", "variables.c", "describe.c"])
     keys = ["reference", "name", "unit", "description", "causality", "bytes", "start"]
     rows = [dict(zip(keys, line.split("\t"))) for line in run(str(program)).splitlines()]
     for row in rows:
@@ -164,7 +164,7 @@ def main(library, folder):
                 print(f"FMI {version}.0 has no name for this platform")
                 continue
             binary = Path(room) / f"{NAME}{version}{names[2]}"
-            compile_unit(library, binary, ["muscle.c", f"fmi{version}.c"], "-shared", "-fPIC")
+            compile_unit(library, binary, ["muscle.c", "variables.c", f"fmi{version}.c"], "-shared", "-fPIC")
             place = f"binaries/{directory}/{NAME}{names[2]}"
             pack(folder / f"{NAME}_fmi{version}.fmu", describe(rows), binary, place)
             print(folder / f"{NAME}_fmi{version}.fmu")

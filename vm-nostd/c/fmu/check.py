@@ -178,12 +178,14 @@ def state_comes_back(path):
         if unit.three
         else (unit.fmu.getFMUstate, unit.fmu.setFMUstate, unit.fmu.freeFMUstate)
     )
-    state = getter()
+    state, then = getter(), unit.time
     first = []
     for _ in range(50):
         unit.step()
         first.append(unit.get("force_n"))
+    # The host, too, goes back in time.
     setter(state)
+    unit.time = then
     again = []
     for _ in range(50):
         unit.step()
@@ -193,6 +195,7 @@ def state_comes_back(path):
     serialized = unit.fmu.serializeFMUState(state) if unit.three else unit.fmu.serializeFMUstate(state)
     restore = unit.fmu.deserializeFMUState if unit.three else unit.fmu.deSerializeFMUstate
     setter(restore(serialized))
+    unit.time = then
     unit.step()
     if unit.get("force_n") != first[0]:
         sys.exit("a state that was read back goes on otherwise")

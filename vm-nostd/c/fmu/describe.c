@@ -11,8 +11,10 @@ int main(void) {
         const Variable *v = variable(reference);
         double real = 0.0;
         int32_t whole = 0;
-        if (v->bytes == 8 ? unit_get_real(&start, reference, &real, message)
-                          : unit_get_integer(&start, reference, &whole, message)) {
+        const uint32_t here = (uint32_t)reference;
+        /* Outputs have no start. */
+        if (v->causality != OUTPUT && (v->bytes == 8 ? unit_get_reals(&start, &here, 1, &real, message)
+                                                     : unit_get_integers(&start, &here, 1, &whole, message))) {
             return 1;
         }
         printf("%u\t%s\t%s\t%s\t%d\t%u\t", (unsigned)reference, v->name, v->unit ? v->unit : "", v->description,

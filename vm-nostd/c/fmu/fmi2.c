@@ -11,6 +11,7 @@ typedef struct {
     State state;
     const fmi2CallbackFunctions *callbacks;
     fmi2Boolean logging;
+    double start;
     char name[64];
 } Unit;
 
@@ -23,11 +24,23 @@ static fmi2Status failed(Unit *unit, const char *message) {
     return fmi2Error;
 }
 
+static void *take(Unit *unit, size_t size) { return unit->callbacks->allocateMemory(1, size); }
+static void give(Unit *unit, void *memory) { unit->callbacks->freeMemory(memory); }
+
+#define FMI(name) fmi2##name
+#define HANDLE fmi2Component
+#define BYTE fmi2Byte
+#include "fmi.h"
+
+FUNCTIONS_OF_STATES(fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate, fmi2SerializedFMUstateSize, fmi2SerializeFMUstate,
+                    fmi2DeSerializeFMUstate)
+
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean logging, size_t n, const fmi2String categories[]) {
     (void)n, (void)categories;
+    if (!c) return fmi2Error;
     ((Unit *)c)->logging = logging;
     return fmi2OK;
 }
@@ -49,6 +62,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     unit->state = unit_start();
     unit->callbacks = callbacks;
     unit->logging = logging;
+    unit->start = 0.0;
     snprintf(unit->name, sizeof unit->name, "%s", name ? name : "");
     return unit;
 }
@@ -60,55 +74,28 @@ void fmi2FreeInstance(fmi2Component c) {
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean stopDefined, fmi2Real stop) {
-    (void)c, (void)toleranceDefined, (void)tolerance, (void)start, (void)stopDefined, (void)stop;
+    (void)toleranceDefined, (void)tolerance, (void)stopDefined, (void)stop;
+    if (!c) return fmi2Error;
+    ((Unit *)c)->start = start;
     return fmi2OK;
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    ((Unit *)c)->state.phase = INITIALIZATION;
-    return fmi2OK;
-}
-
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    char message[MESSAGE];
-    return unit_initialize(&((Unit *)c)->state, message) ? failed(c, message) : fmi2OK;
-}
-
-fmi2Status fmi2Terminate(fmi2Component c) {
-    (void)c;
-    return fmi2OK;
-}
-
-fmi2Status fmi2Reset(fmi2Component c) {
-    ((Unit *)c)->state = unit_start();
-    return fmi2OK;
-}
-
-#define EACH(call)                                                                                                     \
-    char message[MESSAGE];                                                                                             \
-    Unit *unit = c;                                                                                                    \
-    for (size_t i = 0; i < n; i++)                                                                                     \
-        if (call) return failed(unit, message);                                                                        \
-    return fmi2OK
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) { DO(unit_enter(&unit->state, unit->start, message)); }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real values[]) {
-    EACH(unit_get_real(&unit->state, r[i], &values[i], message));
+    DO(unit_get_reals(&unit->state, r, n, values, message));
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real values[]) {
-    EACH(unit_set_real(&unit->state, r[i], values[i], message));
+    DO(unit_set_reals(&unit->state, r, n, values, message));
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Integer values[]) {
-    EACH(unit_get_integer(&unit->state, r[i], &values[i], message));
+    DO(unit_get_integers(&unit->state, r, n, values, message));
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer values[]) {
-    EACH(unit_set_integer(&unit->state, r[i], values[i], message));
+    DO(unit_set_integers(&unit->state, r, n, values, message));
 }
 
-/* There are none of these. */
-static fmi2Status none(fmi2Component c, size_t n, const char *what) {
-    return n ? failed(c, what) : fmi2OK;
-}
-
+/* There are no variables of these types. */
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Boolean values[]) {
     (void)r, (void)values;
     return none(c, n, "the unit has no Boolean variables");
@@ -126,52 +113,10 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference r[], size_t n
     return none(c, n, "the unit has no String variables");
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    Unit *unit = c;
-    if (!*state) *state = unit->callbacks->allocateMemory(1, sizeof(State));
-    if (!*state) return failed(unit, "no memory for a state");
-    *(State *)*state = unit->state;
-    return fmi2OK;
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    Unit *unit = c;
-    if (!state) return failed(unit, "no state");
-    unit->state = *(State *)state;
-    return fmi2OK;
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    if (state && *state) ((Unit *)c)->callbacks->freeMemory(*state);
-    if (state) *state = 0;
-    return fmi2OK;
-}
-
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    (void)c, (void)state;
-    *size = sizeof(State);
-    return fmi2OK;
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    if (size < sizeof(State)) return failed(c, "too little room for a state");
-    memcpy(bytes, state, sizeof(State));
-    return fmi2OK;
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
-    Unit *unit = c;
-    if (!unit_valid(bytes, size)) return failed(unit, "the bytes are no state of this unit");
-    *state = unit->callbacks->allocateMemory(1, sizeof(State));
-    if (!*state) return failed(unit, "no memory for a state");
-    memcpy(*state, bytes, sizeof(State));
-    return fmi2OK;
-}
-
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference u[], size_t nu,
                                         const fmi2ValueReference k[], size_t nk, const fmi2Real du[], fmi2Real dk[]) {
     (void)u, (void)nu, (void)k, (void)nk, (void)du, (void)dk;
-    return failed(c, "the unit has no directional derivatives");
+    return none(c, 1, "the unit has no directional derivatives");
 }
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference r[], size_t n,
                                        const fmi2Integer order[], const fmi2Real values[]) {
@@ -185,17 +130,18 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real point, fmi2Real size, fmi2Boolean noSetState) {
-    char message[MESSAGE];
-    (void)point, (void)noSetState;
-    return unit_step(&((Unit *)c)->state, size, message) ? failed(c, message) : fmi2OK;
+    (void)noSetState;
+    DO(unit_step(&unit->state, point, size, message));
 }
 
-fmi2Status fmi2CancelStep(fmi2Component c) { return failed(c, "steps are not asynchronous"); }
+fmi2Status fmi2CancelStep(fmi2Component c) {
+    return none(c, 1, "steps are not asynchronous");
+}
 
 #define STATUS(function, type)                                                                                         \
     fmi2Status function(fmi2Component c, const fmi2StatusKind kind, type *value) {                                     \
         (void)kind, (void)value;                                                                                       \
-        return failed(c, "steps are not asynchronous");                                                                \
+        return none(c, 1, "steps are not asynchronous");                                                               \
     }
 STATUS(fmi2GetStatus, fmi2Status)
 STATUS(fmi2GetRealStatus, fmi2Real)

@@ -11,7 +11,6 @@ typedef struct {
     State state;
     fmi3InstanceEnvironment environment;
     fmi3LogMessageCallback log;
-    double time;
 } Unit;
 
 /* An error, told to the host's log. */
@@ -20,11 +19,28 @@ static fmi3Status failed(Unit *unit, const char *message) {
     return fmi3Error;
 }
 
+static void *take(Unit *unit, size_t size) {
+    (void)unit;
+    return malloc(size);
+}
+static void give(Unit *unit, void *memory) {
+    (void)unit;
+    free(memory);
+}
+
+#define FMI(name) fmi3##name
+#define HANDLE fmi3Instance
+#define BYTE fmi3Byte
+#include "fmi.h"
+
+FUNCTIONS_OF_STATES(fmi3GetFMUState, fmi3SetFMUState, fmi3FreeFMUState, fmi3SerializedFMUStateSize, fmi3SerializeFMUState,
+                    fmi3DeserializeFMUState)
+
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t n, const fmi3String categories[]) {
-    (void)c, (void)on, (void)n, (void)categories;
-    return fmi3OK;
+    (void)on, (void)n, (void)categories;
+    return c ? fmi3OK : fmi3Error;
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
@@ -68,67 +84,53 @@ void fmi3FreeInstance(fmi3Instance c) { free(c); }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean stopDefined, fmi3Float64 stop) {
-    Unit *unit = c;
     (void)toleranceDefined, (void)tolerance, (void)stopDefined, (void)stop;
-    unit->time = start;
-    unit->state.phase = INITIALIZATION;
-    return fmi3OK;
+    DO(unit_enter(&unit->state, start, message));
 }
 
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    char message[MESSAGE];
-    return unit_initialize(&((Unit *)c)->state, message) ? failed(c, message) : fmi3OK;
+/* As many values as references. */
+static int odd(size_t n, size_t m, char *message) {
+    if (n == m) return 0;
+    snprintf(message, MESSAGE, "%lu values for %lu references", (unsigned long)m, (unsigned long)n);
+    return 1;
 }
-
-fmi3Status fmi3Terminate(fmi3Instance c) {
-    (void)c;
-    return fmi3OK;
-}
-
-fmi3Status fmi3Reset(fmi3Instance c) {
-    ((Unit *)c)->state = unit_start();
-    return fmi3OK;
-}
-
-#define EACH(call)                                                                                                     \
-    char message[MESSAGE];                                                                                             \
-    Unit *unit = c;                                                                                                    \
-    if (n != m) return failed(unit, "as many values as references");                                                   \
-    for (size_t i = 0; i < n; i++)                                                                                     \
-        if (call) return failed(unit, message);                                                                        \
-    return fmi3OK
 
 /* Reference 0 is time, which FMI 3.0 wants as a variable. */
-static int real(const Unit *unit, size_t reference, double *value, char *message) {
-    if (reference) return unit_get_real(&unit->state, reference, value, message);
-    *value = unit->time;
+static int get_reals(const State *state, const fmi3ValueReference r[], size_t n, double values[], char *message) {
+    for (size_t i = 0; i < n; i++) {
+        if (r && values && r[i] == 0) {
+            values[i] = state->time;
+        } else if (unit_get_reals(state, r ? &r[i] : 0, 1, values ? &values[i] : 0, message)) {
+            return 1;
+        }
+    }
     return 0;
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 values[], size_t m) {
-    EACH(real(unit, r[i], &values[i], message));
+    DO(odd(n, m, message) || get_reals(&unit->state, r, n, values, message));
 }
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Float64 values[],
                           size_t m) {
-    EACH(unit_set_real(&unit->state, r[i], values[i], message));
+    DO(odd(n, m, message) || unit_set_reals(&unit->state, r, n, values, message));
 }
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int32 values[], size_t m) {
-    EACH(unit_get_integer(&unit->state, r[i], &values[i], message));
+    DO(odd(n, m, message) || unit_get_integers(&unit->state, r, n, values, message));
 }
 fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Int32 values[], size_t m) {
-    EACH(unit_set_integer(&unit->state, r[i], values[i], message));
+    DO(odd(n, m, message) || unit_set_integers(&unit->state, r, n, values, message));
 }
 
 /* There are no variables of these types. */
 #define NONE(type)                                                                                                     \
     fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3##type values[], size_t m) {  \
         (void)r, (void)values, (void)m;                                                                                \
-        return n ? failed(c, "the unit has no variables of type " #type) : fmi3OK;                                     \
+        return none(c, n, "the unit has no variables of type " #type);                                                 \
     }                                                                                                                  \
     fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3##type values[],        \
                              size_t m) {                                                                               \
         (void)r, (void)values, (void)m;                                                                                \
-        return n ? failed(c, "the unit has no variables of type " #type) : fmi3OK;                                     \
+        return none(c, n, "the unit has no variables of type " #type);                                                 \
     }
 NONE(Float32)
 NONE(Int8)
@@ -141,70 +143,26 @@ NONE(UInt64)
 NONE(Boolean)
 NONE(String)
 
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
-    Unit *unit = c;
-    if (!*state) *state = malloc(sizeof(State));
-    if (!*state) return failed(unit, "no memory for a state");
-    *(State *)*state = unit->state;
-    return fmi3OK;
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    Unit *unit = c;
-    if (!state) return failed(unit, "no state");
-    unit->state = *(State *)state;
-    return fmi3OK;
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
-    (void)c;
-    if (state) {
-        free(*state);
-        *state = 0;
-    }
-    return fmi3OK;
-}
-
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    (void)c, (void)state;
-    *size = sizeof(State);
-    return fmi3OK;
-}
-
-fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    if (size < sizeof(State)) return failed(c, "too little room for a state");
-    memcpy(bytes, state, sizeof(State));
-    return fmi3OK;
-}
-
-fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
-    if (!unit_valid(bytes, size)) return failed(c, "the bytes are no state of this unit");
-    *state = malloc(sizeof(State));
-    if (!*state) return failed(c, "no memory for a state");
-    memcpy(*state, bytes, sizeof(State));
-    return fmi3OK;
+static int step(Unit *unit, double point, double size, fmi3Float64 *last, char *message) {
+    const int refused = unit_step(&unit->state, point, size, message);
+    if (last) *last = unit->state.time;
+    return refused;
 }
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 point, fmi3Float64 size, fmi3Boolean noSetState,
                       fmi3Boolean *events, fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last) {
-    char message[MESSAGE];
-    Unit *unit = c;
     (void)noSetState;
     if (events) *events = fmi3False;
     if (terminate) *terminate = fmi3False;
     if (early) *early = fmi3False;
-    if (last) *last = point;
-    if (unit_step(&unit->state, size, message)) return failed(unit, message);
-    unit->time = point + size;
-    if (last) *last = unit->time;
-    return fmi3OK;
+    DO(step(unit, point, size, last, message));
 }
 
 /* What a co-simulation unit without events, clocks and derivatives has not. */
 #define NEVER(name, ...)                                                                                               \
-    fmi3Status name(fmi3Instance c, __VA_ARGS__) { return failed(c, #name " is not for this unit"); }
+    fmi3Status name(fmi3Instance c, __VA_ARGS__) { return none(c, 1, #name " is not for this unit"); }
 #define NEVER_ALONE(name)                                                                                              \
-    fmi3Status name(fmi3Instance c) { return failed(c, #name " is not for this unit"); }
+    fmi3Status name(fmi3Instance c) { return none(c, 1, #name " is not for this unit"); }
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 NEVER(fmi3GetBinary, const fmi3ValueReference r[], size_t n, size_t sizes[], fmi3Binary values[], size_t m)
 NEVER(fmi3SetBinary, const fmi3ValueReference r[], size_t n, const size_t sizes[], const fmi3Binary values[], size_t m)

@@ -1,121 +1,16 @@
+/* The muscle behind the unit: built when initialization ends, stepped tick by tick, saved as plain data. */
+
 #include "muscle.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define MOST_VARIABLES (64 + 32 * VM_FMU_FIBERS)
-
-static Variable table[MOST_VARIABLES];
-static size_t count;
-
-static void add(const char *name, const char *unit, const char *description, Causality causality, size_t offset,
-                size_t bytes) {
-    Variable *place = &table[count++];
-    snprintf(place->name, sizeof place->name, "%s", name);
-    place->unit = unit;
-    place->description = description;
-    place->causality = causality;
-    place->offset = offset;
-    place->bytes = bytes;
-}
-
-#define AT(field) offsetof(Values, field)
-#define REAL(field, unit, description) add(#field, unit, description, PARAMETER, AT(params.field), 8)
-#define WHOLE(field, description) add(#field, 0, description, PARAMETER, AT(params.field), 4)
-#define ELEMENT(field, unit, description) add(#field, unit, description, PARAMETER, AT(params.elements.field), 8)
-
-static void add_fiber(unsigned index) {
-    const size_t base = AT(params.fibers) + index * sizeof(VmFiber);
-    char name[48];
-#define FIBER(field, member, unit, description, bytes)                                                                 \
-    snprintf(name, sizeof name, "fibers[%u]." field, index);                                                           \
-    add(name, unit, description, PARAMETER, base + offsetof(VmFiber, member), bytes)
-#define F(field, unit, description) FIBER(#field, field, unit, description, 8)
-    F(fraction, "1", "share of the cross-sectional area; all add to 1");
-    FIBER("rank", rank, 0, "order of recruitment", 1);
-    FIBER("has_sag", has_sag, 0, "1 if the type has sag", 1);
-    FIBER("has_yield", has_yield, 0, "1 if the type has yield", 1);
-    F(half_force_frequency, "Hz", "f_0.5");
-    F(minimum_frequency, "1", "f_min, f_0.5");
-    F(maximum_frequency, "1", "f_max, f_0.5");
-    F(force_length_width, "1", "omega of FL");
-    F(force_length_skewness, "1", "beta of FL");
-    F(force_length_roundness, "1", "rho of FL");
-    F(maximum_velocity, "1/s", "V_max, L_ce0/s, negative");
-    FIBER("shortening_0", shortening, "1", "c_V0 of FV", 8);
-    FIBER("shortening_1", shortening[1], "1", "c_V1 of FV", 8);
-    FIBER("lengthening_0", lengthening, "1", "a_V0 of FV", 8);
-    FIBER("lengthening_1", lengthening[1], "1", "a_V1 of FV", 8);
-    FIBER("lengthening_2", lengthening[2], "1", "a_V2 of FV", 8);
-    F(lengthening_velocity, "1/s", "b_V of FV, L_ce0/s");
-    F(activation_scale, "1", "a_f of Af");
-    F(activation_exponent, "1", "n_f0 of Af");
-    F(activation_length_dependence, "1", "n_f1 of Af");
-    F(rise_s, "s", "T_f1");
-    F(rise_per_frequency_s, "s", "T_f2");
-    F(fall_s, "s", "T_f3");
-    F(fall_per_activation_s, "s", "T_f4");
-    F(effective_length_time_s, "s", "T_L; not used by the modes of this unit");
-    F(sag_resting_level, "1", "a_S1, if it sags");
-    F(sag_firing_level, "1", "a_S2, if it sags");
-    F(sag_time_s, "s", "T_S, if it sags");
-    F(yield_depth, "1", "c_Y, if it yields");
-    F(yield_velocity, "1/s", "V_Y, L_ce0/s, if it yields");
-    F(yield_time_s, "s", "T_Y, if it yields");
-}
-
-static void fill(void) {
-    if (count) return;
-    add("activation", "1", "U, or strength of the stimulus (FES); 0..1", INPUT, AT(activation), 8);
-    add("path_length_m", "m", "musculotendon path at the end of the step", INPUT, AT(path_length_m), 8);
-    add("stimulation_frequency_pps", "Hz", "pulses per second; FES only", INPUT, AT(stimulation_frequency_pps), 8);
-    add("force_n", "N", "tendon force", OUTPUT, AT(force_n), 8);
-    add("fascicle_length", "1", "L_ce0", OUTPUT, AT(fascicle_length), 8);
-    add("fascicle_velocity", "1/s", "L_ce0/s, positive when lengthening", OUTPUT, AT(fascicle_velocity), 8);
-    add("relative_force", "1", "tendon force over F0", OUTPUT, AT(relative_force), 8);
-    add("max_isometric_force_n", "N", "F0", OUTPUT, AT(max_isometric_force_n), 8);
-    add("status", 0, "VM_STATUS_ flags of the step; 0 if nothing was clipped", OUTPUT, AT(status), 4);
-    add("mode", 0, "0 natural continuous recruitment, 1 intramuscular FES", PARAMETER, AT(mode), 4);
-    add("arithmetic", 0, "0 f32, 1 fixed point, 2 f64", PARAMETER, AT(arithmetic), 4);
-    add("time_step_s", "s", "tick of the model; steps are whole multiples of it", PARAMETER, AT(time_step_s), 8);
-    WHOLE(accuracy_class, "0 standard, 1 economy, 2 fine");
-    WHOLE(fiber_count, "number of fibre types");
-    REAL(mass_kg, "kg", "muscle mass");
-    REAL(fascicle_length_m, "m", "optimal fascicle length L_ce0");
-    REAL(tendon_length_m, "m", "optimal tendon length L_se0");
-    REAL(max_path_length_m, "m", "longest path L_mt_max");
-    REAL(recruitment_saturation, "1", "U_r");
-    ELEMENT(tendon_stiffness, "1", "c_T");
-    ELEMENT(tendon_toe, "1", "k_T");
-    ELEMENT(tendon_slack_length, "1", "L_r_T, L_se0");
-    ELEMENT(parallel_stiffness, "1", "c_1");
-    ELEMENT(parallel_toe, "1", "k_1");
-    ELEMENT(parallel_slack_length, "1", "L_r1, L_max");
-    ELEMENT(parallel_viscosity, "s", "eta, F0 s/L_ce0");
-    ELEMENT(compression_strength, "1", "c_2");
-    ELEMENT(compression_steepness, "1", "k_2");
-    ELEMENT(compression_onset_length, "1", "L_r2, L_ce0");
-    ELEMENT(specific_tension, "N/m2", "force per cross-sectional area");
-    ELEMENT(density, "kg/m3", "density of muscle");
-    for (unsigned index = 0; index < VM_FMU_FIBERS; index++) add_fiber(index);
-}
-
-size_t variable_count(void) {
-    fill();
-    return count;
-}
-
-const Variable *variable(size_t reference) {
-    fill();
-    return reference >= 1 && reference <= count ? &table[reference - 1] : 0;
-}
-
 State unit_start(void) {
     State state;
     VmMuscleParams *params = &state.values.params;
     memset(&state, 0, sizeof state);
-    memcpy(&state.token, "VM_FMU_1", sizeof state.token);
+    memcpy(&state.token, "VM_FMU_2", sizeof state.token);
     /* The paper's validation muscle. */
     params->version = VM_VERSION;
     params->fiber_count = 2;
@@ -134,66 +29,22 @@ State unit_start(void) {
     return state;
 }
 
-/* The variable, or a message. */
-static const Variable *typed(size_t reference, int real, char *message) {
-    const Variable *found = variable(reference);
-    if (!found) {
-        snprintf(message, MESSAGE, "no variable has the value reference %lu", (unsigned long)reference);
-    } else if ((found->bytes == 8) != real) {
-        snprintf(message, MESSAGE, "%s is %s", found->name, real ? "an integer" : "a real number");
-        found = 0;
+int unit_enter(State *state, double time, char *message) {
+    if (state->phase != INSTANTIATED) {
+        snprintf(message, MESSAGE, "initialization begins once, after instantiation or reset");
+        return 1;
     }
-    return found;
-}
-
-/* Parameters are set before the muscle is built, and outputs never. */
-static int settable(const State *state, const Variable *found, char *message) {
-    if (found->causality == INPUT || (found->causality == PARAMETER && state->phase < STEPPING)) return 1;
-    snprintf(message, MESSAGE, "%s cannot be set %s", found->name,
-             found->causality == OUTPUT ? "because it is an output" : "after initialization");
+    state->phase = INITIALIZATION;
+    state->time = time;
     return 0;
 }
 
-int unit_set_real(State *state, size_t reference, double value, char *message) {
-    const Variable *found = typed(reference, 1, message);
-    if (!found || !settable(state, found, message)) return 1;
-    memcpy((char *)&state->values + found->offset, &value, sizeof value);
-    return 0;
-}
-
-int unit_get_real(const State *state, size_t reference, double *value, char *message) {
-    const Variable *found = typed(reference, 1, message);
-    if (!found) return 1;
-    memcpy(value, (const char *)&state->values + found->offset, sizeof *value);
-    return 0;
-}
-
-int unit_set_integer(State *state, size_t reference, int32_t value, char *message) {
-    const Variable *found = typed(reference, 0, message);
-    if (!found || !settable(state, found, message)) return 1;
-    if (found->bytes == 1) {
-        const uint8_t byte = (uint8_t)value;
-        if (value != byte) {
-            snprintf(message, MESSAGE, "%s = %ld: must be between 0 and 255", found->name, (long)value);
-            return 1;
-        }
-        memcpy((char *)&state->values + found->offset, &byte, 1);
-    } else {
-        memcpy((char *)&state->values + found->offset, &value, 4);
+int unit_terminate(State *state, char *message) {
+    if (state->phase != STEPPING) {
+        snprintf(message, MESSAGE, "the unit is not initialized");
+        return 1;
     }
-    return 0;
-}
-
-int unit_get_integer(const State *state, size_t reference, int32_t *value, char *message) {
-    const Variable *found = typed(reference, 0, message);
-    uint8_t byte;
-    if (!found) return 1;
-    if (found->bytes == 1) {
-        memcpy(&byte, (const char *)&state->values + found->offset, 1);
-        *value = byte;
-    } else {
-        memcpy(value, (const char *)&state->values + found->offset, 4);
-    }
+    state->phase = TERMINATED;
     return 0;
 }
 
@@ -212,11 +63,11 @@ static int said(VmResult result, const VmError *error, char *message) {
     return 1;
 }
 
+/* In fixed point, NaN becomes 0: integers have none. */
 static int32_t whole(double value) {
-    return value >= 2147483647.0 ? 2147483647 : value <= -2147483647.0 ? -2147483647 : (int32_t)lround(value);
+    return value >= 2147483647.0 ? 2147483647 : value > -2147483647.0 ? (int32_t)lround(value) : value < 0.0 ? -2147483647 : 0;
 }
 
-/* In fixed point, NaN becomes 0: integers have none. */
 static uint16_t part(double value, double most) {
     return (uint16_t)(value >= most ? most : value > 0.0 ? lround(value) : 0);
 }
@@ -246,6 +97,10 @@ int unit_initialize(State *state, char *message) {
     VmDerived derived;
     VmError error;
     VmResult result;
+    if (state->phase != INITIALIZATION) {
+        snprintf(message, MESSAGE, "initialization ends after it has begun");
+        return 1;
+    }
     state->phase = FAILED;
     if (values->params.fiber_count > VM_FMU_FIBERS) {
         snprintf(message, MESSAGE, "fiber_count = %lu: must be between 1 and %d",
@@ -288,9 +143,10 @@ int unit_initialize(State *state, char *message) {
     return 0;
 }
 
-/* One tick on a path. */
+/* One tick on a path. In fixed point a path that is not a number is, as in floating point, the last one, and flagged. */
 static VmResult tick(State *state, double path) {
     Values *values = &state->values;
+    const int lost = isnan(path);
     const double activation = values->activation, frequency = values->stimulation_frequency_pps;
     VmResult result;
     if (values->arithmetic == ARITHMETIC_F32) {
@@ -299,10 +155,12 @@ static VmResult tick(State *state, double path) {
         result = vm_f32_step(&state->muscle.f32, &input, &output);
         if (!result) TAKE(output, output.force_n);
     } else if (values->arithmetic == ARITHMETIC_FIXED) {
-        const VmInputFixed input = {whole(path * 1e6), part(activation * 1e3, 65535.0), part(frequency * 10.0, 65535.0)};
+        const double kept = lost ? state->path_before_m : path;
+        const VmInputFixed input = {whole(kept * 1e6), part(activation * 1e3, 65535.0), part(frequency * 10.0, 65535.0)};
         VmOutputFixed output;
         result = vm_fixed_step(&state->muscle.fixed, &input, &output);
         if (!result) take_fixed(values, &output);
+        if (lost) values->status |= VM_STATUS_PATH_LENGTH_NOT_FINITE;
     } else {
         const VmInputF64 input = {activation, path, frequency};
         VmOutputF64 output;
@@ -312,13 +170,17 @@ static VmResult tick(State *state, double path) {
     return result;
 }
 
-int unit_step(State *state, double duration_s, char *message) {
+int unit_step(State *state, double point, double duration_s, char *message) {
     const Values *values = &state->values;
     const double step = values->time_step_s, ticks = round(duration_s / step);
     const double before = state->path_before_m, after = values->path_length_m;
     uint32_t flags = 0;
     if (state->phase != STEPPING) {
         snprintf(message, MESSAGE, "the unit is not initialized");
+        return 1;
+    }
+    if (!(fabs(point - state->time) < 0.5 * step)) {
+        snprintf(message, MESSAGE, "communication point = %.9g: the unit is at %.9g", point, state->time);
         return 1;
     }
     if (!(ticks >= 1.0 && ticks <= 1e6 && fabs(duration_s - ticks * step) <= 1e-6 * step)) {
@@ -336,10 +198,37 @@ int unit_step(State *state, double duration_s, char *message) {
         flags |= values->status;
     }
     state->values.status = flags;
-    state->path_before_m = after;
+    /* A path that was lost, or beyond all ranges, is no place from which the next one moves. */
+    if (isfinite(after)) state->path_before_m = after;
+    state->time = point + duration_s;
     return 0;
 }
 
-int unit_valid(const void *bytes, size_t size) {
-    return size == sizeof(State) && memcmp(bytes, "VM_FMU_1", 8) == 0;
+/* FNV-1a of a state. */
+static uint64_t checksum(const State *state) {
+    uint64_t sum = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < sizeof *state; i++) sum = (sum ^ ((const unsigned char *)state)[i]) * 0x100000001b3u;
+    return sum;
+}
+
+int unit_serialize(const State *state, void *bytes, size_t size, char *message) {
+    if (!state || !bytes || size < UNIT_BYTES) {
+        snprintf(message, MESSAGE, "a state needs room for %lu bytes", (unsigned long)UNIT_BYTES);
+        return 1;
+    }
+    const uint64_t sum = checksum(state);
+    memcpy(bytes, state, sizeof *state);
+    memcpy((char *)bytes + sizeof *state, &sum, sizeof sum);
+    return 0;
+}
+
+int unit_deserialize(State *state, const void *bytes, size_t size, char *message) {
+    uint64_t sum;
+    if (state && bytes && size == UNIT_BYTES) {
+        memcpy(state, bytes, sizeof *state);
+        memcpy(&sum, (const char *)bytes + sizeof *state, sizeof sum);
+        if (memcmp(&state->token, "VM_FMU_2", 8) == 0 && sum == checksum(state)) return 0;
+    }
+    snprintf(message, MESSAGE, "the bytes are no state of this unit");
+    return 1;
 }

@@ -34,7 +34,7 @@ typedef enum { PARAMETER, INPUT, OUTPUT } Causality;
 
 /* One of the values; its reference is its place in the table, counted from 1. */
 typedef struct {
-    char name[48];
+    const char *name;
     const char *unit;
     const char *description;
     Causality causality;
@@ -43,7 +43,7 @@ typedef struct {
     size_t bytes;
 } Variable;
 
-typedef enum { INSTANTIATED, INITIALIZATION, STEPPING, FAILED } Phase;
+typedef enum { INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED, FAILED } Phase;
 
 /* All that a state of the unit is. Plain data: a copy is a saved state. */
 typedef struct {
@@ -56,6 +56,7 @@ typedef struct {
         uint64_t room[VM_MUSCLE_F64_BYTES(VM_FMU_FIBERS) / 8];
     } muscle;
     double path_before_m;
+    double time;
     Phase phase;
 } State;
 
@@ -66,12 +67,17 @@ size_t variable_count(void);
 const Variable *variable(size_t reference);
 
 State unit_start(void);
-/* 0, or 1 with a message. */
-int unit_set_real(State *state, size_t reference, double value, char *message);
-int unit_get_real(const State *state, size_t reference, double *value, char *message);
-int unit_set_integer(State *state, size_t reference, int32_t value, char *message);
-int unit_get_integer(const State *state, size_t reference, int32_t *value, char *message);
+/* Each returns 0, or 1 with a message. */
+int unit_set_reals(State *state, const uint32_t *references, size_t n, const double *values, char *message);
+int unit_get_reals(const State *state, const uint32_t *references, size_t n, double *values, char *message);
+int unit_set_integers(State *state, const uint32_t *references, size_t n, const int32_t *values, char *message);
+int unit_get_integers(const State *state, const uint32_t *references, size_t n, int32_t *values, char *message);
+int unit_enter(State *state, double time, char *message);
 int unit_initialize(State *state, char *message);
-int unit_step(State *state, double duration_s, char *message);
-/* 1 if bytes may be a state. */
-int unit_valid(const void *bytes, size_t size);
+int unit_step(State *state, double point, double duration_s, char *message);
+int unit_terminate(State *state, char *message);
+
+/* Bytes of a serialized state: the state, and its checksum. */
+#define UNIT_BYTES (sizeof(State) + sizeof(uint64_t))
+int unit_serialize(const State *state, void *bytes, size_t size, char *message);
+int unit_deserialize(State *state, const void *bytes, size_t size, char *message);
