@@ -13,6 +13,8 @@ int misuse(void);
 /* The same of joints and controllers; and what they compute, written. */
 int control(void);
 int play_control(void);
+/* Any number in any input. */
+int anything(void);
 
 #define CHECK(condition) do { if (!(condition)) return __LINE__; } while (0)
 

@@ -1,4 +1,4 @@
-/* Misuse alone, of a library with the feature `units`. */
+/* Misuse and any numbers, of a library with the feature `units`. */
 
 #include "check.h"
 
@@ -7,6 +7,7 @@ int units(void);
 int main(void) {
     int line = misuse();
     if (line == 0) line = control();
+    if (line == 0) line = anything();
     if (line == 0) line = units();
     return platform_end(line);
 }

@@ -370,7 +370,7 @@ fn bad_inputs_are_flagged_and_commands_stay_in_range() {
         assert!((-80.0..=60.0).contains(&command.torque) && command.gain.is_finite());
     }
     let out = controller.step(&mut state, still(9.0), sensed(9.0));
-    assert!(out.status.contains(ControlStatus::TARGET_INVALID | ControlStatus::ANGLE_CLIPPED));
+    assert!(out.status.contains(ControlStatus::TARGET_INVALID | ControlStatus::MEASURED_CLIPPED));
 }
 
 #[test]

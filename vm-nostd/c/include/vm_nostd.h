@@ -321,15 +321,15 @@ typedef struct VmFesF64 VmFesF64;
 #define VM_CONTROL_MEASURED_NOT_FINITE 1
 
 /**
- * The target was not finite (the last angle was kept, without motion) or outside its range
- * (clipped).
+ * The target was not finite (the last angle was kept, without motion) or outside its range, for
+ * torques 10,240 N m (clipped).
  */
 #define VM_CONTROL_TARGET_INVALID 2
 
 /**
- * The measured angle was outside the joint's range and was clipped.
+ * The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was clipped.
  */
-#define VM_CONTROL_ANGLE_CLIPPED 4
+#define VM_CONTROL_MEASURED_CLIPPED 4
 
 /**
  * The torque was clipped to its limits.
@@ -2595,7 +2595,8 @@ VmResult vm_f32_fatigue_build(VmFatigueF32 *fatigue,
 VmResult vm_f32_fatigue_advance(VmFatigueF32 *fatigue, const VmInputF32 *input, float *fitness);
 
 /**
- * Multiplies the forces of an output by a fitness.
+ * Multiplies the forces of an output by a fitness, 0..1. VM_RESULT_PARAMETER for any other
+ * number.
  */
 VmResult vm_f32_fatigued(VmOutputF32 *output, float fitness);
 
@@ -2942,7 +2943,8 @@ VmResult vm_fixed_fatigue_advance(VmFatigueFixed *fatigue,
                                   int32_t *fitness);
 
 /**
- * Multiplies the forces of an output by a fitness.
+ * Multiplies the forces of an output by a fitness, 0..1. VM_RESULT_PARAMETER for any other
+ * number.
  */
 VmResult vm_fixed_fatigued(VmOutputFixed *output, int32_t fitness);
 
@@ -3289,7 +3291,8 @@ VmResult vm_f64_fatigue_build(VmFatigueF64 *fatigue,
 VmResult vm_f64_fatigue_advance(VmFatigueF64 *fatigue, const VmInputF64 *input, double *fitness);
 
 /**
- * Multiplies the forces of an output by a fitness.
+ * Multiplies the forces of an output by a fitness, 0..1. VM_RESULT_PARAMETER for any other
+ * number.
  */
 VmResult vm_f64_fatigued(VmOutputF64 *output, double fitness);
 

@@ -72,13 +72,20 @@ macro_rules! extra_functions {
             plain(extras::advance_fatigue::<$S, _, _>(fatigue, input, fitness))
         }
 
-        /// Multiplies the forces of an output by a fitness.
+        /// Multiplies the forces of an output by a fitness, 0..1. VM_RESULT_PARAMETER for any other
+        /// number.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fatigued"))]
         pub extern "C" fn vm_a_fatigued(output: *mut VmOutputA, fitness: $Number) -> VmResult {
             let outcome = || {
                 let mut output_now = read(output)?;
-                output_now.tire(<$S as Arithmetic>::number_from(fitness));
+                let fitness = <$S as Arithmetic>::number_from(fitness);
+                if !(fitness >= <$S as model::Scalar>::ZERO
+                    && fitness <= <$S as model::Scalar>::ONE)
+                {
+                    return Err(VmResult::Parameter);
+                }
+                output_now.tire(fitness);
                 Place::new(output)?.put(output_now);
                 Ok(())
             };

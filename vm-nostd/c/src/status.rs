@@ -68,11 +68,11 @@ pub const VM_PROSTHESIS_MUSCLE: u16 = 128;
 
 /// The measured value was not finite: the last one was kept.
 pub const VM_CONTROL_MEASURED_NOT_FINITE: u16 = 1;
-/// The target was not finite (the last angle was kept, without motion) or outside its range
-/// (clipped).
+/// The target was not finite (the last angle was kept, without motion) or outside its range, for
+/// torques 10,240 N m (clipped).
 pub const VM_CONTROL_TARGET_INVALID: u16 = 2;
-/// The measured angle was outside the joint's range and was clipped.
-pub const VM_CONTROL_ANGLE_CLIPPED: u16 = 4;
+/// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was clipped.
+pub const VM_CONTROL_MEASURED_CLIPPED: u16 = 4;
 /// The torque was clipped to its limits.
 pub const VM_CONTROL_TORQUE_LIMITED: u16 = 8;
 /// No activation makes the torque: a muscle is stimulated fully.
@@ -143,7 +143,7 @@ same! {
     ControlStatus:
     VM_CONTROL_MEASURED_NOT_FINITE = MEASURED_NOT_FINITE,
     VM_CONTROL_TARGET_INVALID = TARGET_INVALID,
-    VM_CONTROL_ANGLE_CLIPPED = ANGLE_CLIPPED,
+    VM_CONTROL_MEASURED_CLIPPED = MEASURED_CLIPPED,
     VM_CONTROL_TORQUE_LIMITED = TORQUE_LIMITED,
     VM_CONTROL_UNREACHABLE = UNREACHABLE,
     VM_CONTROL_LEAD_CLIPPED = LEAD_CLIPPED,

@@ -3,7 +3,6 @@
 //! Torque -> forces (moment arms, co-contraction) -> rested forces (fitness) -> steady
 //! activations ([`SteadyFes`]) -> stimulation (the lead that cancels excitation).
 
-use super::joint::{Joint, Posture};
 use super::lead::{Lead, LeadState};
 use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
 use crate::beyond_paper::steady::SteadyFes;
@@ -78,25 +77,23 @@ pub(super) struct Stimulated<S> {
 }
 
 impl<S: Scalar, const N: usize> Inverse<S, N> {
-    /// The stimulation with which muscle `index` makes a torque of its own sign, of which the
-    /// feed-forward wants `forward`.
+    /// The stimulation with which the muscle makes a force (F0), of which the feed-forward wants
+    /// `forward`, on a path.
     ///
     /// Fatigue is made up for in the feed-forward alone: in the feedback it would multiply the
     /// loop's gain, and a patient who tires less than the model says would oscillate.
     pub(super) fn step(
         &self,
         state: &mut InverseState<S>,
-        (joint, posture, index): (&Joint<S, 1, 2>, &Posture<S, 1, 2>, usize),
-        torque: S,
+        force: S,
         forward: S,
+        path: S::PathLength,
         frequency: S::Quantity,
     ) -> Stimulated<S> {
         let fitness = state.fatigue.map_or(S::ONE, |fatigue| fatigue.fitness());
         let strength = fitness.max(self.least_fitness);
-        let forward = if forward.abs() < torque.abs() { forward } else { torque };
-        let rested = torque + (forward.ratio(strength) - forward);
-        let force = joint.force_for(posture, index, 0, rested);
-        let path = posture.muscles[index].path_length;
+        let forward = forward.min(force);
+        let force = force + (forward.ratio(strength) - forward);
         let (wanted, status) = self.steady.nearest_activation(force, path, frequency);
         let ahead = self.lead.step(&mut state.lead, wanted);
         let activation = ahead.max(S::ZERO).min(S::ONE);

@@ -29,11 +29,12 @@ bitflags::bitflags! {
     pub struct ControlStatus: u16 {
         /// The measured value was not finite: the last one was kept.
         const MEASURED_NOT_FINITE = 1 << 0;
-        /// The target was not finite (the last angle was kept, without motion) or outside its range
-        /// (clipped).
+        /// The target was not finite (the last angle was kept, without motion) or outside its range,
+        /// for torques 10,240 N m (clipped).
         const TARGET_INVALID = 1 << 1;
-        /// The measured angle was outside the joint's range and was clipped.
-        const ANGLE_CLIPPED = 1 << 2;
+        /// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was
+        /// clipped.
+        const MEASURED_CLIPPED = 1 << 2;
         /// The torque was clipped to its limits.
         const TORQUE_LIMITED = 1 << 3;
         /// No activation makes the torque: a muscle is stimulated fully.
@@ -105,6 +106,7 @@ pub struct FesController<S: Scalar, const N: usize> {
     per_torque: S::Factor,
     frequency: S::Quantity,
     most_motion: S,
+    most_torque: S,
 }
 
 /// A recruitment curve, and the half of the pulse that is constant.
@@ -142,6 +144,7 @@ impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
             per_torque,
             frequency,
             most_motion,
+            most_torque,
         } = self;
         range.sum(checksum);
         joint.sum(checksum);
@@ -159,6 +162,7 @@ impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
         per_torque.sum(checksum);
         frequency.sum(checksum);
         most_motion.sum(checksum);
+        most_torque.sum(checksum);
     }
 }
 
@@ -193,6 +197,9 @@ impl<S: Scalar> FesControllerState<S> {
 const CONTROLLER: u32 = 0x101;
 /// Greatest velocity (rad/s) and acceleration (rad/s²) of a target.
 const MOST_MOTION: f64 = 100.0;
+/// Greatest torque (N m) of a target, and that is measured: of an artefact no more stays in the
+/// filters than a saved state may hold.
+const MOST_TORQUE: f64 = 10_240.0;
 
 impl<S: Scalar, const N: usize> FesController<S, N> {
     /// Builds a controller for a time step; the error has the muscle's index, field, value, limit.
@@ -253,6 +260,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             per_torque: S::per_quantity(1.0 / TORQUE_UNIT),
             frequency: S::quantity(frequency),
             most_motion: S::from_f64(MOST_MOTION),
+            most_torque: S::from_f64(MOST_TORQUE / TORQUE_UNIT),
         })
     }
 
@@ -287,7 +295,10 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let target = self.admit_target(state, target, &mut status);
         self.admit_sensors(state, sensors, &mut status);
 
-        let asked = S::of_quantity(target.torque, &self.per_torque);
+        let (asked, clipped) = self.torque_of(target.torque);
+        if clipped {
+            status |= ControlStatus::TARGET_INVALID;
+        }
         let motion = self.limb.torque(target.angle, target.velocity, target.acceleration);
         let (forward, wanted, measured) = if self.of_torque {
             (asked, asked, state.measured)
@@ -305,17 +316,18 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         status.set(ControlStatus::TORQUE_LIMITED, limited);
 
         let posture = self.joint.posture([state.angle]);
-        let shares = self.cocontraction.shares(torque).torques;
-        let forward = self.cocontraction.shares(forward).torques;
+        let [forces, forward] = [torque, forward].map(|torque| {
+            self.joint.forces_for(&posture, &self.cocontraction.shares(torque).torques)
+        });
         let mut activations = [S::ZERO; 2];
         let mut pulses = [self.pulse(0, S::ZERO).0; 2];
         let mut muscles = [Status::empty(); 2];
         let mut at_most = [false; 2];
         for i in 0..2 {
-            let place = (&self.joint, &posture, i);
             let inverse = &mut state.inverses[i];
+            let path = posture.muscles[i].path_length;
             let stimulated =
-                self.inverses[i].step(inverse, place, shares[i], forward[i], self.frequency);
+                self.inverses[i].step(inverse, forces[i], forward[i], path, self.frequency);
             activations[i] = stimulated.activation;
             muscles[i] = stimulated.status;
             at_most[i] = stimulated.at_most;
@@ -380,17 +392,28 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let mut lost = !sensors.angle.is_finite();
         if !lost {
             let (angle, clipped) = self.range.clip(sensors.angle);
-            status.set(ControlStatus::ANGLE_CLIPPED, clipped);
+            status.set(ControlStatus::MEASURED_CLIPPED, clipped);
             state.angle = angle;
         }
         if self.of_torque {
             if S::quantity_is_finite(sensors.torque) {
-                state.measured = S::of_quantity(sensors.torque, &self.per_torque);
+                let (measured, clipped) = self.torque_of(sensors.torque);
+                state.measured = measured;
+                if clipped {
+                    *status |= ControlStatus::MEASURED_CLIPPED;
+                }
             } else {
                 lost = true;
             }
         }
         status.set(ControlStatus::MEASURED_NOT_FINITE, lost);
+    }
+
+    /// A torque in its unit, and whether it was clipped.
+    fn torque_of(&self, torque: S::Quantity) -> (S, bool) {
+        let number = S::of_quantity(torque, &self.per_torque);
+        let clipped = number.max(-self.most_torque).min(self.most_torque);
+        (clipped, clipped != number)
     }
 
     fn pulse(&self, muscle: usize, activation: S) -> (Pulse<S>, bool) {

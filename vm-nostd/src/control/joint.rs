@@ -98,6 +98,24 @@ struct Acting<S: Scalar, const J: usize> {
 summed!([S: Scalar, const J: usize] Acting<S, J> { path, force, force_per_length });
 summed!([S: Scalar, const J: usize, const M: usize] Joint<S, J, M> { axes, muscles, unit });
 
+impl<S: Scalar, const M: usize> Joint<S, 1, M> {
+    /// Forces (F0) with which each muscle alone makes a torque of its own (units of 1,024 N m); 0
+    /// for a torque of the other direction.
+    pub(super) fn forces_for(&self, posture: &Posture<S, 1, M>, torques: &[S; M]) -> [S; M] {
+        // By iterators: an index would leave a bounds check, and with it a panic.
+        let mut forces = *torques;
+        for ((force, acting), placed) in forces.iter_mut().zip(&self.muscles).zip(&posture.muscles)
+        {
+            let [arm] = placed.moment_arms;
+            let per_force = arm.scaled(&acting.force);
+            let acts = (per_force > S::ZERO) == (*force > S::ZERO);
+            let alone = force.abs().ratio(per_force.abs().max(S::LEAST));
+            *force = if acts { alone } else { S::ZERO };
+        }
+        forces
+    }
+}
+
 /// The muscles in a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posture<S: Scalar, const J: usize, const M: usize> {
@@ -176,20 +194,6 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
             }
             sum
         })
-    }
-
-    /// Force (F0) with which a muscle alone makes a torque (units of 1,024 N m) about the only
-    /// joint that counts, `j`; 0 for a torque of the other direction.
-    pub(super) fn force_for(
-        &self,
-        posture: &Posture<S, J, M>,
-        muscle: usize,
-        j: usize,
-        torque: S,
-    ) -> S {
-        let per_force = posture.muscles[muscle].moment_arms[j].scaled(&self.muscles[muscle].force);
-        let acts = (per_force > S::ZERO) == (torque > S::ZERO);
-        if acts { torque.abs().ratio(per_force.abs().max(S::LEAST)) } else { S::ZERO }
     }
 
     /// A torque or stiffness in N m, or N m/rad, from units of 1,024.
