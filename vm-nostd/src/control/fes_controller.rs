@@ -11,11 +11,14 @@ use super::lead::{Lead, LeadParams, LeadState};
 use super::limb::Limb;
 use super::pi::{Pi, PiState, Saturated};
 use super::saved::{Parts, fingerprint};
-use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
-use crate::beyond_paper::recruitment_curve::{Pulse, PulseStatus, RecruitmentCurve};
+use crate::beyond_paper::fatigue::{Fatigue, FatigueParams, FatigueState};
+use crate::beyond_paper::recruitment_curve::{
+    Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams,
+};
 use crate::beyond_paper::steady::SteadyFes;
 use crate::checksum::{Checksum, Summed};
 use crate::error::ParameterError;
+use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::status::Status;
@@ -207,36 +210,42 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let of = |muscle: usize| move |error| JointError { muscle: Some(muscle), error };
         let own = |error: ParameterError| JointError { muscle: None, error };
         params.validate_own().map_err(own)?;
-        for (index, muscle) in params.muscles.iter().enumerate() {
+        for (index, (muscle, modulation)) in
+            params.muscles.iter().zip(&params.modulation).enumerate()
+        {
             // Before the joint, which would name what follows from a muscle's fields.
             muscle.validate().map_err(of(index))?;
-            params.modulation[index].validate().map_err(of(index))?;
+            modulation.validate().map_err(of(index))?;
         }
-        let placed = [0, 1].map(|i| JointMuscle::new(&params.muscles[i], params.paths[i]));
+        let [flexor, extensor] = &params.muscles;
+        let [of_flexor, of_extensor] = params.paths;
+        let placed = [JointMuscle::new(flexor, of_flexor), JointMuscle::new(extensor, of_extensor)];
         let joint = Joint::build(&[params.range], &placed)?;
         let frequency = params.stimulation_frequency;
-        let inverse = |i: usize| -> Result<Inverse<S, N>, ParameterError> {
-            let muscle = &params.muscles[i];
+        let inverse = |muscle: &MuscleParams<N>, fatigue: Option<FatigueParams>| {
             let lead = LeadParams::of_muscle(muscle, frequency, params.lead_filter_time);
-            let fatigue = params.fatigue[i].map(|fatigue| Fatigue::build(&fatigue, step));
-            Ok(Inverse {
+            let fatigue = fatigue.map(|fatigue| Fatigue::build(&fatigue, step));
+            Ok::<_, ParameterError>(Inverse {
                 steady: SteadyFes::build(muscle)?,
                 lead: Lead::build(&lead, step)?,
                 fatigue: fatigue.transpose()?,
                 least_fitness: S::from_f64(params.least_fitness),
             })
         };
-        let electrode = |i: usize| -> Result<Electrode<S>, ParameterError> {
-            let (by_width, constant) = match params.modulation[i] {
+        let electrode = |curve: &RecruitmentCurveParams, modulation: Modulation| {
+            let (by_width, constant) = match modulation {
                 Modulation::Width { amplitude } => (true, amplitude * 1e3),
                 Modulation::Amplitude { width } => (false, width * 1e6),
             };
-            Ok(Electrode {
-                curve: RecruitmentCurve::build(&params.electrodes[i])?,
+            Ok::<_, ParameterError>(Electrode {
+                curve: RecruitmentCurve::build(curve)?,
                 by_width,
                 constant: S::quantity(constant),
             })
         };
+        let [flexor_tires, extensor_tires] = params.fatigue;
+        let [first_driven, second_driven] = params.modulation;
+        let [first, second] = &params.electrodes;
         let of_torque = params.measured == Measured::Torque;
         let error_unit = if of_torque { TORQUE_UNIT } else { 1.0 };
         let gain = params.gain.map(|gain| GainEstimate::build(&gain, TORQUE_UNIT, step));
@@ -244,8 +253,14 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             range: Range::new((params.range.least, params.range.most), S::from_f64),
             joint,
             limb: Limb::new(&params.limb, &params.range, TORQUE_UNIT).map_err(own)?,
-            inverses: [inverse(0).map_err(of(0))?, inverse(1).map_err(of(1))?],
-            electrodes: [electrode(0).map_err(of(0))?, electrode(1).map_err(of(1))?],
+            inverses: [
+                inverse(flexor, flexor_tires).map_err(of(0))?,
+                inverse(extensor, extensor_tires).map_err(of(1))?,
+            ],
+            electrodes: [
+                electrode(first, first_driven).map_err(of(0))?,
+                electrode(second, second_driven).map_err(of(1))?,
+            ],
             cocontraction: CoContraction {
                 torque: S::from_f64(params.cocontraction / TORQUE_UNIT),
             },

@@ -102,7 +102,7 @@ impl<S: Scalar, const M: usize> Joint<S, 1, M> {
     /// Forces (F0) with which each muscle alone makes a torque of its own (units of 1,024 N m); 0
     /// for a torque of the other direction.
     pub(super) fn forces_for(&self, posture: &Posture<S, 1, M>, torques: &[S; M]) -> [S; M] {
-        // By iterators: an index would leave a bounds check, and with it a panic.
+        // By iterators, as all below: an index would leave a bounds check, and with it a panic.
         let mut forces = *torques;
         for ((force, acting), placed) in forces.iter_mut().zip(&self.muscles).zip(&posture.muscles)
         {
@@ -164,14 +164,18 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
     /// Paths and moment arms at angles (rad), which are clipped to their ranges.
     pub fn posture(&self, angles: [S; J]) -> Posture<S, J, M> {
         let mut status = JointStatus::empty();
-        let shares = core::array::from_fn(|j| {
-            let (axis, angle) = (&self.axes[j], angles[j]);
+        let mut shares = angles;
+        for (share, axis) in shares.iter_mut().zip(&self.axes) {
+            let angle = *share;
             let is_number = angle.partial_cmp(&angle).is_some();
-            status.set(JointStatus::ANGLE_NOT_FINITE, !angle.is_finite());
-            let outside = is_number && !(angle >= axis.least && angle <= axis.most);
-            status |= if outside { JointStatus::ANGLE_CLIPPED } else { JointStatus::empty() };
-            if is_number { axis.share(angle) } else { S::ZERO }
-        });
+            if !angle.is_finite() {
+                status |= JointStatus::ANGLE_NOT_FINITE;
+            }
+            if is_number && !(angle >= axis.least && angle <= axis.most) {
+                status |= JointStatus::ANGLE_CLIPPED;
+            }
+            *share = if is_number { axis.share(angle) } else { S::ZERO };
+        }
         Posture { muscles: self.muscles.each_ref().map(|muscle| muscle.path.at(&shares)), status }
     }
 
@@ -186,14 +190,13 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
 
     /// Torques in units of 1,024 N m.
     pub(super) fn torque_numbers(&self, posture: &Posture<S, J, M>, forces: &[S; M]) -> [S; J] {
-        core::array::from_fn(|j| {
-            let mut sum = S::ZERO;
-            for ((acting, placed), &force) in self.muscles.iter().zip(&posture.muscles).zip(forces)
-            {
-                sum = sum + (force * placed.moment_arms[j]).scaled(&acting.force);
+        let mut sums = [S::ZERO; J];
+        for ((acting, placed), &force) in self.muscles.iter().zip(&posture.muscles).zip(forces) {
+            for (sum, &arm) in sums.iter_mut().zip(&placed.moment_arms) {
+                *sum = *sum + (force * arm).scaled(&acting.force);
             }
-            sum
-        })
+        }
+        sums
     }
 
     /// A torque or stiffness in N m, or N m/rad, from units of 1,024.
@@ -221,18 +224,20 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
         forces: &[S; M],
         stiffnesses: &[S; M],
     ) -> [S; J] {
-        core::array::from_fn(|j| {
-            let mut sum = S::ZERO;
-            for (index, acting) in self.muscles.iter().enumerate() {
-                let placed = &posture.muscles[index];
-                let arm = placed.moment_arms[j];
-                let elastic = stiffnesses[index] * arm * arm;
-                let geometric = forces[index] * placed.arm_slopes[j];
-                sum = sum + elastic.scaled(&acting.force_per_length)
+        let mut sums = [S::ZERO; J];
+        let pulls = forces.iter().zip(stiffnesses);
+        for ((acting, placed), (&force, &stiffness)) in
+            self.muscles.iter().zip(&posture.muscles).zip(pulls)
+        {
+            let arms = placed.moment_arms.iter().zip(&placed.arm_slopes);
+            for (sum, (&arm, &slope)) in sums.iter_mut().zip(arms) {
+                let elastic = stiffness * arm * arm;
+                let geometric = force * slope;
+                *sum = *sum + elastic.scaled(&acting.force_per_length)
                     - geometric.scaled(&acting.force);
             }
-            sum
-        })
+        }
+        sums
     }
 
     /// Checksum of all coefficients.

@@ -214,9 +214,8 @@ impl<const J: usize> PathParams<J> {
         let between = steepest * range.half() / f64::from(SAMPLES);
         let mut other = (0.0, 0.0);
         if J == 2 {
-            let beside = &ranges[1 - j];
-            let ends = [beside.least, beside.most]
-                .map(|angle| self.product * (angle - self.reference[1 - j]));
+            let (beside, reference) = (&ranges[1 - j], self.reference[1 - j]);
+            let ends = [beside.least, beside.most].map(|angle| self.product * (angle - reference));
             other = (Scalar::min(ends[0], ends[1]), Scalar::max(ends[0], ends[1]));
         }
         for sample in 0..=SAMPLES {
@@ -322,25 +321,25 @@ pub struct Placed<S: Scalar, const J: usize> {
 impl<S: Scalar, const J: usize> Path<S, J> {
     /// A path that was validated for these ranges.
     pub(super) fn new(params: &PathParams<J>, ranges: &[AngleRange; J]) -> Self {
-        let middle = core::array::from_fn(|j| ranges[j].middle());
-        let change = core::array::from_fn(|j| {
+        let middle = ranges.each_ref().map(AngleRange::middle);
+        let mut change = [[0.0; POWERS]; J];
+        for (j, powers) in change.iter_mut().enumerate() {
             let offset = middle[j] - params.reference[j];
             let other = if J == 2 {
                 params.product * (middle[1 - j] - params.reference[1 - j])
             } else {
                 0.0
             };
-            let mut powers = shifted(&params.terms[j], offset);
+            *powers = shifted(&params.terms[j], offset);
             powers[1] += other;
             let mut scale = 1.0 / UNIT;
             // Its value in the middle is in `middle`.
             powers[0] = 0.0;
-            for power in &mut powers {
+            for power in powers {
                 *power *= scale;
                 scale *= ranges[j].reach();
             }
-            powers
-        });
+        }
         let half = |j: usize| ranges[j].reach();
         Self {
             middle: S::path_length(params.length_at(middle)),

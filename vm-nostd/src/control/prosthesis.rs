@@ -126,17 +126,24 @@ impl<S: Scalar, const N: usize, const D: usize> Prosthesis<S, N, D> {
     pub fn build(params: &ProsthesisParams<N>, step: TimeStep) -> Result<Self, JointError> {
         let of = |muscle: usize| move |error| JointError { muscle: Some(muscle), error };
         let own = |error: ParameterError| JointError { muscle: None, error };
-        let muscle = |i: usize| ContinuousMuscle::build(&params.muscles[i], step).map_err(of(i));
-        let envelope = |i: usize| Envelope::build(&params.envelopes[i], step).map_err(of(i));
-        let muscles = [muscle(0)?, muscle(1)?];
-        let placed = [0, 1].map(|i| JointMuscle::new(&params.muscles[i], params.paths[i]));
+        let [flexor, extensor] = &params.muscles;
+        let [of_flexor, of_extensor] = params.paths;
+        let muscles = [
+            ContinuousMuscle::build(flexor, step).map_err(of(0))?,
+            ContinuousMuscle::build(extensor, step).map_err(of(1))?,
+        ];
+        let placed = [JointMuscle::new(flexor, of_flexor), JointMuscle::new(extensor, of_extensor)];
+        let [first, second] = &params.envelopes;
         let torque = ["torque.least", "torque.most", "torque.rate"];
         let stiffness = ["stiffness.least", "stiffness.most", "stiffness.rate"];
         Ok(Self {
             range: Range::new((params.range.least, params.range.most), S::from_f64),
             joint: Joint::build(&[params.range], &placed)?,
             muscles,
-            envelopes: [envelope(0)?, envelope(1)?],
+            envelopes: [
+                Envelope::build(first, step).map_err(of(0))?,
+                Envelope::build(second, step).map_err(of(1))?,
+            ],
             none: S::quantity(0.0),
             torque: Limiter::new(&params.torque, torque, TORQUE_UNIT, step).map_err(own)?,
             stiffness: Limiter::new(&params.stiffness, stiffness, TORQUE_UNIT, step)
@@ -147,14 +154,15 @@ impl<S: Scalar, const N: usize, const D: usize> Prosthesis<S, N, D> {
     /// At rest at an angle (rad), which is clipped to the joint's range.
     pub fn rest(&self, angle: S) -> Result<ProsthesisState<S, N, D>, ParameterError> {
         let posture = self.joint.posture([angle]);
-        let rest = |i: usize| self.muscles[i].rest(posture.muscles[i].path_length);
+        let [flexor, extensor] = &self.muscles;
+        let [of_flexor, of_extensor] = posture.muscles.map(|muscle| muscle.path_length);
         let (angle, _) = self.range.clip(angle);
         Ok(ProsthesisState {
             envelopes: self.envelopes.each_ref().map(Envelope::rested),
             angle,
             torque: self.torque.clip(S::ZERO),
             stiffness: self.stiffness.clip(S::ZERO),
-            muscles: [rest(0)?, rest(1)?],
+            muscles: [flexor.rest(of_flexor)?, extensor.rest(of_extensor)?],
         })
     }
 
