@@ -80,9 +80,8 @@ macro_rules! extra_functions {
             let outcome = || {
                 let mut output_now = read(output)?;
                 let fitness = <$S as Arithmetic>::number_from(fitness);
-                if !(fitness >= <$S as model::Scalar>::ZERO
-                    && fitness <= <$S as model::Scalar>::ONE)
-                {
+                let shares = <$S as model::Scalar>::ZERO..=<$S as model::Scalar>::ONE;
+                if !shares.contains(&fitness) {
                     return Err(VmResult::Parameter);
                 }
                 output_now.tire(fitness);
