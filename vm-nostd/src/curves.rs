@@ -117,7 +117,7 @@ impl<S: Scalar> FiberCurves<'_, S> {
         if self.fiber.force_velocity.is_beyond(velocity) {
             return S::ZERO;
         }
-        self.fiber.force_velocity.on(&curve, S::ZERO, velocity).value
+        self.fiber.force_velocity.on(&curve, S::part(0.0), velocity).value(velocity)
     }
 
     /// Activation-frequency relation Af, 0..1, at a frequency in f0.5, at least 0: the effective

@@ -3,6 +3,7 @@
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::Domain;
 use crate::equations::force_length::{self, OptimalLength};
+use crate::equations::force_velocity;
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::yielding::Speed;
 use crate::error::{ParameterError, within};
@@ -363,7 +364,11 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         Contractile {
             gains,
             fibers: &self.fibers,
-            curves: self.fibers.each_ref().map(|fiber| fiber.force_velocity.at(inside, travel)),
+            curves: force_velocity::curves(
+                self.fibers.each_ref().map(|fiber| &fiber.force_velocity),
+                inside,
+                travel,
+            ),
             passive: Course {
                 middle: passive_at_middle
                     + passive_slope * (start - middle).scaled(&self.tick_rate),

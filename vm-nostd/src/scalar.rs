@@ -47,6 +47,8 @@ pub trait Scalar:
     type Factor: Copy + Debug + Summed + Send + Sync;
     /// State of a lag, with more resolution than the number itself.
     type LagState: Copy + Debug + PartialEq + Send + Sync;
+    /// A number from -1/2 to 1/2, to multiply with: a part of a tick, or of what is of that order.
+    type Part: Copy + Debug + Add<Output = Self::Part> + Summed + Send + Sync;
     /// Share, 0..1, of the distance of a lag to its target.
     type Share: Copy + Debug + Summed + Send + Sync;
     /// A musculotendon path length: m in floating point, µm in fixed point.
@@ -66,6 +68,8 @@ pub trait Scalar:
     const ONE: Self;
     /// 1/2.
     const HALF: Self;
+    /// -1/2.
+    const MINUS_HALF: Self::Part;
     /// A positive value that is negligible in every equation.
     const LEAST: Self;
     /// Largest representable coefficient.
@@ -100,6 +104,14 @@ pub trait Scalar:
     /// Product with a constant; saturates.
     #[must_use]
     fn scaled(self, factor: &Self::Factor) -> Self;
+    /// The part nearest to a constant, -1/2 to 1/2. Used when a muscle is built.
+    fn part(value: f64) -> Self::Part;
+    /// Product with a part; fixed point rounds toward minus infinity.
+    #[must_use]
+    fn portion(self, part: Self::Part) -> Self;
+    /// Product with a part; fixed point rounds to nearest.
+    #[must_use]
+    fn rounded_portion(self, part: Self::Part) -> Self;
     /// Quotient by a positive number; saturates.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;

@@ -156,10 +156,30 @@ pub(crate) struct VelocityCurve<S> {
     lengthening: Course<S>,
 }
 
+/// The curves of all types in a tick with a mid-tick fascicle length and its change.
+#[inline(always)]
+pub(crate) fn curves<S: Scalar, const N: usize>(
+    types: [&ForceVelocity<S>; N],
+    fascicle_length: S,
+    travel: S,
+) -> [VelocityCurve<S>; N] {
+    let none = Course { middle: S::ZERO, change: S::ZERO };
+    let mut curves = [VelocityCurve { shortening: none, lengthening: none }; N];
+    for (curve, fiber) in curves.iter_mut().zip(types) {
+        *curve = fiber.at(fascicle_length, travel);
+    }
+    curves
+}
+
 impl<S: Scalar> ForceVelocity<S> {
     /// n and d of the branch selected by `lengthening`, `time` ticks after mid-tick of a `curve`.
     #[inline(always)]
-    pub(crate) fn branch(&self, curve: &VelocityCurve<S>, time: S, lengthening: bool) -> Branch<S> {
+    pub(crate) fn branch(
+        &self,
+        curve: &VelocityCurve<S>,
+        time: S::Part,
+        lengthening: bool,
+    ) -> Branch<S> {
         if lengthening {
             Branch { numerator: curve.lengthening.at(time), denominator: self.per_lengthening }
         } else {
@@ -185,12 +205,23 @@ pub(crate) struct Branch<S> {
     pub(crate) denominator: S,
 }
 
-/// FV at one velocity, its slope and half its curvature with respect to V.
+/// FV at one velocity V of a branch: its value is 1 + secant V, its slope with respect to V secant
+/// times reciprocal, and half its curvature the slope times -bend.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Value<S> {
-    pub(crate) value: S,
-    pub(crate) slope: S,
-    pub(crate) half_curvature: S,
+    /// (n - d)/(1 + d V).
+    pub(crate) secant: S,
+    /// 1/(1 + d V).
+    pub(crate) reciprocal: S,
+    /// d/(1 + d V).
+    pub(crate) bend: S,
+}
+
+impl<S: Scalar> Value<S> {
+    /// FV at the velocity.
+    pub(crate) fn value(&self, velocity: S) -> S {
+        S::ONE + self.secant * velocity
+    }
 }
 
 impl<S: Scalar> Branch<S> {
@@ -199,25 +230,23 @@ impl<S: Scalar> Branch<S> {
         Self { numerator: (-velocity).reciprocal(), denominator: S::ZERO }
     }
 
-    /// FV of the branch at a velocity of it, given 1/(1 + d V).
+    /// FV of the branch at a velocity V of it, given 1/(1 + d V).
     #[inline(always)]
-    pub(crate) fn at(&self, velocity: S, reciprocal: S) -> Value<S> {
-        let rise = (self.numerator - self.denominator) * reciprocal;
-        let slope = rise * reciprocal;
+    pub(crate) fn at(&self, reciprocal: S) -> Value<S> {
         Value {
-            value: S::ONE + rise * velocity,
-            slope,
-            half_curvature: -(self.denominator * reciprocal * slope),
+            secant: (self.numerator - self.denominator) * reciprocal,
+            reciprocal,
+            bend: self.denominator * reciprocal,
         }
     }
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// FV, its slope and half its curvature at a velocity above V_max, as the mechanics take them.
-    pub(crate) fn on(&self, curve: &VelocityCurve<S>, time: S, velocity: S) -> Value<S> {
+    /// FV at a velocity above V_max, as the mechanics take it.
+    pub(crate) fn on(&self, curve: &VelocityCurve<S>, time: S::Part, velocity: S) -> Value<S> {
         let branch = self.branch(curve, time, velocity > S::ZERO);
         let [reciprocal] = velocity.reciprocals_of_one_plus([branch.denominator]);
-        branch.at(velocity, reciprocal)
+        branch.at(reciprocal)
     }
 }
 
@@ -241,10 +270,12 @@ mod tests {
         }
         for velocity in [-0.2, -3.0, -60.0] {
             let [of_f64] = velocity.reciprocals_of_one_plus([0.0]);
-            assert!(Branch::<f64>::beyond(velocity).at(velocity, of_f64).value.abs() < 1e-15);
+            let secant = Branch::<f64>::beyond(velocity).at(of_f64).secant;
+            assert!((1.0 + secant * velocity).abs() < 1e-15);
             let velocity = Fixed::from_f64(velocity);
             let [of_fixed] = velocity.reciprocals_of_one_plus([Fixed::ZERO]);
-            let value = Branch::<Fixed>::beyond(velocity).at(velocity, of_fixed).value.to_f64();
+            let secant = Branch::<Fixed>::beyond(velocity).at(of_fixed).secant;
+            let value = (Fixed::ONE + secant * velocity).to_f64();
             assert!(value.abs() < 60.0 / 16_777_216.0 + 1e-7, "{value}");
         }
     }

@@ -66,6 +66,8 @@ summed!([S: Scalar] Tendon<S> { slack_path, per_path, per_toe, force, stiffness 
 pub(crate) struct Pull<S> {
     /// F0.
     pub(crate) force: S,
+    /// Share of the taut tendon's stiffness, 0..1.
+    pub(crate) tautness: S,
     /// Decrease per tick of fascicles lengthening at 1 L_ce0/s, F0.
     pub(crate) stiffness: S,
     /// The extension saturated.
@@ -138,6 +140,7 @@ impl<S: Scalar> Tendon<S> {
         let force = value.scaled(&self.force);
         Pull {
             force,
+            tautness: slope,
             stiffness: slope.scaled(&self.stiffness),
             saturated: toes.is_saturated() || force.is_saturated(),
         }

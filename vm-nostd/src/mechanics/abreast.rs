@@ -13,9 +13,8 @@ pub(super) fn zip<A, B, T, const N: usize>(
     core::array::from_fn(|index| both(&first[index], &second[index]))
 }
 
-/// The sum over the types of products.
+/// The sum over the types.
 #[inline(always)]
-pub(super) fn dot<S: Scalar, const N: usize>(gains: &[S; N], values: [S; N]) -> S {
-    let products = zip(gains, &values, |gain, value| *gain * *value);
-    products.into_iter().reduce(|sum, product| sum + product).unwrap_or(S::ZERO)
+pub(super) fn sum<S: Scalar, const N: usize>(values: &[S; N]) -> S {
+    values.iter().copied().reduce(|sum, value| sum + value).unwrap_or(S::ZERO)
 }

@@ -14,7 +14,7 @@
 //! - Damping: the midpoint rule would leave velocity that damping has long consumed, to alternate
 //!   for ever. How much of it is left is taken from the slope of FV; see [`decay`].
 
-use super::abreast::{dot, zip};
+use super::abreast::{sum, zip};
 use super::decay;
 use crate::checksum::summed;
 use crate::equations::force_velocity::{Branch, VelocityCurve};
@@ -94,7 +94,7 @@ pub(crate) struct Contraction<S: Scalar> {
     /// How many there are.
     substeps: u8,
     /// A tick, s.
-    tick: S::Factor,
+    tick: S::Part,
     /// Ticks per second.
     tick_rate: S::Factor,
     speed: S,
@@ -110,18 +110,18 @@ summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick,
 
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
-struct Substep<S> {
-    /// As a share of the tick.
-    share: S,
-    /// Half of that.
-    half_share: S,
+struct Substep<S: Scalar> {
+    /// Half of it, in ticks.
+    half: S::Part,
     /// Mass over half the substep, F0 s/L_ce0.
     inertia: S,
-    /// How much less that is, per F0 of the tendon's stiffness in half the substep at 1 L_ce0/s.
+    /// How much less that is on a taut tendon.
     fitted: S,
+    /// Stiffness of the taut tendon times half the substep, F0 s/L_ce0.
+    taut: S,
 }
 
-summed!([S: Scalar] Substep<S> { share, half_share, inertia, fitted });
+summed!([S: Scalar] Substep<S> { half, inertia, fitted, taut });
 
 impl<S: Scalar> Substep<S> {
     /// A substep of `seconds`, for a mass in F0 s²/L_ce0 on a taut tendon in F0/L_ce0.
@@ -131,12 +131,11 @@ impl<S: Scalar> Substep<S> {
         // Half the phase that the ringing turns by; tan of it is what the midpoint rule sees.
         let phase = Scalar::min(half * square_root(stiffness / mass), FASTEST_RINGING);
         let share = phase / tangent(phase);
-        let fitted = inertia * (1.0 - share * share) / (stiffness * half);
         Self {
-            share: S::from_f64(seconds / step.seconds()),
-            half_share: S::from_f64(half / step.seconds()),
+            half: S::part(half / step.seconds()),
             inertia: S::from_f64(inertia),
-            fitted: S::from_f64(fitted),
+            fitted: S::from_f64(inertia * (1.0 - share * share)),
+            taut: S::from_f64(stiffness * half),
         }
     }
 }
@@ -190,7 +189,7 @@ impl<S: Scalar> Contraction<S> {
             viscosity: S::from_f64(params.elements.parallel.viscosity),
             substep: Substep::new(seconds, step, mass, stiffness),
             substeps,
-            tick: S::factor(step.seconds()),
+            tick: S::part(step.seconds()),
             tick_rate: S::factor(1.0 / step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
             slowest: S::from_f64(params.shortening_velocity()),
@@ -202,7 +201,7 @@ impl<S: Scalar> Contraction<S> {
 
     /// What the fascicles have travelled, L_ce0, by a travel in L_ce0/s and ticks.
     pub(crate) fn lengthening(&self, travel: S) -> S {
-        travel.scaled(&self.tick)
+        travel.rounded_portion(self.tick)
     }
 
     /// One tick from `velocity`, in which the tendon, were the fascicles to stay as they are, would
@@ -222,10 +221,11 @@ impl<S: Scalar> Contraction<S> {
             contractile,
             extension,
             path_speed: extension.change.scaled(&self.tick_rate),
+            elastic: contractile.passive_slope.portion(self.substep.half),
         };
         let mut motion = Motion { travel: S::ZERO, velocity };
         // Time since the tick's middle, in ticks.
-        let mut time = -S::HALF;
+        let mut time = S::MINUS_HALF + self.substep.half;
         let (mut worst, mut held) = (S::ZERO, false);
         let (mut mean, mut square) = (S::ZERO, S::ZERO);
         for _ in 0..self.substeps {
@@ -233,7 +233,7 @@ impl<S: Scalar> Contraction<S> {
             worst = worst.max(substep.balance.abs());
             mean = mean + substep.step;
             square = square + substep.step * (self.per_spread * substep.speed);
-            time = time + self.substep.share;
+            time = time + self.substep.half + self.substep.half;
         }
         Advanced {
             motion,
@@ -263,38 +263,41 @@ struct Tick<'a, S: Scalar, const N: usize> {
     extension: Course<S>,
     /// L_ce0/s.
     path_speed: S,
+    /// The passive elements' stiffness times half the substep, F0 s/L_ce0.
+    elastic: S,
 }
 
 impl<S: Scalar, const N: usize> Tick<'_, S, N> {
-    /// One substep that starts at `time` with `motion` and leaves it as it is at the end.
+    /// One substep about `time`, which starts with `motion` and leaves it as it is at the end.
     #[inline(always)]
     fn substep<R: RecruitmentTick<S, N>>(
         &self,
         motion: &mut Motion<S>,
-        time: S,
+        time: S::Part,
         held: &mut bool,
     ) -> Passed<S> {
         let (c, element) = (self.contraction, self.contractile);
         let substep = &c.substep;
-        let (start, half) = (motion.velocity, substep.half_share);
-        let time = time + half;
+        let (start, half) = (motion.velocity, substep.half);
 
         // The tendon where it would be at the velocity foreseen, and as straight as it is there.
-        let foreseen = motion.travel + half * start;
+        let foreseen = motion.travel + start.portion(half);
         let extension = self.extension.at(time);
         let pull = c.tendon.pull(extension - c.lengthening(foreseen));
-        let stiffness = pull.stiffness * half;
-        let inertia = substep.inertia - substep.fitted * stiffness;
+        let stiffness = substep.taut * pull.tautness;
+        let inertia = substep.inertia - substep.fitted * pull.tautness;
         // What does not depend on velocity: inertia (V - start) - F_se is this and a slope times V.
         let slope = inertia + stiffness;
-        let constant = -(slope * start + pull.force);
+        let momentum = slope * start;
+        let constant = -(momentum + pull.force);
 
         let mut gains = element.gains.map(|gain| gain.at(time));
         let passive = element.passive.at(time) + element.passive_slope * motion.travel;
-        let mut elastic = element.passive_slope * half;
+        let mut elastic = self.elastic;
 
         // The sign of the net force at V = 0 is that of the velocity.
-        let at_rest = gains.iter().fold(least::<S, R, N>(passive), |sum, gain| sum + *gain);
+        let mut filaments = sum(&gains);
+        let at_rest = least::<S, R, N>(passive) + filaments;
         let lengthening = (at_rest.of_sign(false) + constant).is_negative();
         let velocity = start.of_sign(!lengthening);
 
@@ -309,11 +312,11 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
                     gains[index] = S::ZERO;
                 }
             }
+            filaments = sum(&gains);
         }
         let reciprocals =
             velocity.reciprocals_of_one_plus(branches.each_ref().map(|branch| branch.denominator));
-        let values =
-            zip(&branches, &reciprocals, |branch, reciprocal| branch.at(velocity, *reciprocal));
+        let curves = zip(&branches, &reciprocals, |branch, reciprocal| branch.at(*reciprocal));
 
         // F_ce', what it gains with velocity and time, at that velocity.
         let mut viscosity = c.viscosity;
@@ -322,18 +325,22 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         if R::PASSIVE_ONLY_PULLS && force.is_negative() {
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
-        let mut force = force + dot(&gains, values.each_ref().map(|fv| fv.value));
-        let mut steepness = dot(&gains, values.each_ref().map(|fv| fv.slope));
-        let mut half_curvature = dot(&gains, values.each_ref().map(|fv| fv.half_curvature));
+        // gain FV = gain + secant V of each type, and the change of that.
+        let secants = zip(&gains, &curves, |gain, fv| *gain * fv.secant);
+        let slopes = zip(&secants, &curves, |secant, fv| *secant * fv.reciprocal);
         let changes = element.gains.map(|gain| gain.change);
-        rise = rise + dot(&changes, values.each_ref().map(|fv| fv.value));
+        let changing = sum(&zip(&changes, &curves, |change, fv| *change * fv.secant));
+        let mut force = force + filaments + sum(&secants) * velocity;
+        let mut steepness = sum(&slopes);
+        let mut half_curvature = -sum(&zip(&slopes, &curves, |slope, fv| *slope * fv.bend));
+        rise = rise + sum(&changes) + changing * velocity;
         if force.is_negative() {
             cold_path();
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
             (steepness, half_curvature) = (S::ZERO, S::ZERO);
         }
 
-        let balance = constant + slope * velocity + force;
+        let balance = constant + momentum.of_sign(!lengthening) + force;
         let line = slope + (viscosity + elastic);
         let steepness = steepness.max(c.least_steepness);
         let balanced = balance.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
@@ -346,10 +353,12 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         }
 
         // What pulls at the fascicles ever more, though velocity stay: F0 in half the substep.
-        let growing = stiffness * (self.path_speed - middle) - elastic * middle - half * rise;
+        let growing =
+            stiffness * (self.path_speed - middle) - elastic * middle - rise.portion(half);
         let left = decay::left(&balanced, middle - start, growing);
         let mean = middle + left.mean;
-        let step = substep.share * mean;
+        let half_step = mean.portion(half);
+        let step = half_step + half_step;
         *motion = Motion { travel: motion.travel + step, velocity: middle + left.end };
         Passed { balance, step: step.abs(), speed: mean.abs() }
     }
@@ -370,7 +379,7 @@ mod tests {
         let (mass, stiffness) = (2.0e-5, 153.0);
         let substep = Substep::<f64>::new(0.25e-3, TimeStep::MILLISECOND, mass, stiffness);
         let half = 0.125e-3;
-        let inertia = substep.inertia - substep.fitted * (stiffness * half);
+        let inertia = substep.inertia - substep.fitted;
         // The midpoint rule turns the phase by 2 atan(h/2 sqrt(stiffness/mass)).
         let found = (stiffness * half / inertia).sqrt().atan();
         assert!((found - half * (stiffness / mass).sqrt()).abs() < 1e-12, "{found}");

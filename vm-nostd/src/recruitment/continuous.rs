@@ -132,7 +132,10 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         // Where there is nothing to share, any divisor will do.
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
         // U_eff W.
-        let weights = excesses.map(|excess| middle * excess.scaled(&per_sum));
+        let mut weights = excesses;
+        for weight in &mut weights {
+            *weight = middle * weight.scaled(&per_sum);
+        }
 
         let drives = self.units.each_ref().map(|unit| unit.frequency(activation));
         let described = |i: usize, kept| Lumped {

@@ -6,6 +6,7 @@ mod exponential;
 mod factor;
 mod mantissa;
 mod number;
+mod part;
 mod pieces;
 mod polynomial;
 mod product;
@@ -16,6 +17,7 @@ pub use factor::Factor;
 pub use number::Fixed;
 #[cfg(test)]
 pub(crate) use number::saturations;
+pub use part::Part;
 
 use super::sealed::Sealed;
 use super::{Balance, Lags, Scalar};
@@ -50,6 +52,7 @@ summed_bits!(Fixed, I16F16, I23F9);
 impl Scalar for Fixed {
     type Bits = u32;
     type Factor = Factor;
+    type Part = Part;
     /// Q8.56.
     type LagState = i64;
     /// Q0.32.
@@ -64,6 +67,7 @@ impl Scalar for Fixed {
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(ONE);
     const HALF: Self = Self::from_bits(ONE / 2);
+    const MINUS_HALF: Part = Part::MINUS_HALF;
     const LEAST: Self = Self::from_bits(1);
     const LARGEST_COEFFICIENT: f64 = 60.0;
     const SIDE_BY_SIDE: bool = false;
@@ -100,6 +104,17 @@ impl Scalar for Fixed {
     fn scaled(self, factor: &Factor) -> Self {
         Self::from_bits(factor.times(self.to_bits()))
     }
+    fn part(value: f64) -> Part {
+        Part::new(value)
+    }
+    #[inline(always)]
+    fn portion(self, part: Part) -> Self {
+        Self::from_bits(part.of(self.to_bits()))
+    }
+    #[inline(always)]
+    fn rounded_portion(self, part: Part) -> Self {
+        Self::from_bits(part.rounded_of(self.to_bits()))
+    }
     fn ratio(self, divisor: Self) -> Self {
         self.scaled(&divisor.reciprocal_factor())
     }
@@ -120,9 +135,12 @@ impl Scalar for Fixed {
         self,
         terms: [&[Self; TERMS]; N],
     ) -> [Self; N] {
-        terms.map(|terms| {
-            Self::from_bits(polynomial::at(self.to_bits(), terms.iter().map(|t| t.to_bits())))
-        })
+        let mut values = [Self::ZERO; N];
+        for (value, terms) in values.iter_mut().zip(terms) {
+            let terms = terms.iter().map(|t| t.to_bits());
+            *value = Self::from_bits(polynomial::at(self.to_bits(), terms));
+        }
+        values
     }
 
     fn reciprocal(self) -> Self {
@@ -190,11 +208,20 @@ impl Scalar for Fixed {
         inertia: Self,
         viscosity: Self,
     ) -> Balance<Self> {
-        let bits = [self, line, steepness, half_curvature].map(Self::to_bits);
-        let (root, share) = root::hyperbola_root(bits);
-        let damping = viscosity + steepness * Self::from_bits(share);
-        let reciprocal = (inertia + damping).reciprocal();
-        Balance { root: Self::from_bits(root), damped: damping * reciprocal, reciprocal }
+        let (root, reciprocal) = root::hyperbola_root(&root::Forces {
+            residual: self.to_bits(),
+            line: line.to_bits(),
+            steepness: steepness.to_bits(),
+            half_curvature: half_curvature.to_bits(),
+            inertia: inertia.to_bits(),
+            viscosity: viscosity.to_bits(),
+        });
+        let reciprocal = Self::from_bits(reciprocal);
+        Balance {
+            root: Self::from_bits(root),
+            damped: Self::ONE - inertia * reciprocal,
+            reciprocal,
+        }
     }
 
     fn lag_state(self) -> i64 {

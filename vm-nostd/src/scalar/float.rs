@@ -16,6 +16,7 @@ macro_rules! float {
         impl Scalar for $float {
             type Bits = $bits;
             type Factor = Self;
+            type Part = Self;
             type LagState = Self;
             type Share = Self;
             type PathLength = Self;
@@ -26,6 +27,7 @@ macro_rules! float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
+            const MINUS_HALF: Self = -0.5;
             const LEAST: Self = 1e-36;
             const LARGEST_COEFFICIENT: f64 = f64::MAX;
             const SIDE_BY_SIDE: bool = true;
@@ -58,6 +60,15 @@ macro_rules! float {
             }
             fn scaled(self, factor: &Self) -> Self {
                 self * factor
+            }
+            fn part(value: f64) -> Self {
+                value as Self
+            }
+            fn portion(self, part: Self) -> Self {
+                self * part
+            }
+            fn rounded_portion(self, part: Self) -> Self {
+                self * part
             }
             fn ratio(self, divisor: Self) -> Self {
                 self / divisor

@@ -190,20 +190,22 @@ fn force_velocity_agrees_with_the_paper_on_both_branches() {
                     (b - (a0 + a1 * l + a2 * l * l) * v) / (b + v)
                 };
                 let at64 = |v: f64| f64.on(&f64.at(l, 0.0), 0.0, v);
+                let value_at = |v: f64| at64(v).value(v);
+                let slope_at = |v: f64| at64(v).secant * at64(v).reciprocal;
                 let curve = fixed.at(q(l), Fixed::ZERO);
-                let at_fixed = fixed.on(&curve, Fixed::ZERO, q(v)).value;
-                let at32 = f32.on(&f32.at(l as f32, 0.0), 0.0, v as f32).value;
-                value.see(at32, at_fixed, at64(v).value, exact);
+                let at_fixed = fixed.on(&curve, Fixed::part(0.0), q(v)).value(q(v));
+                let at32 = f32.on(&f32.at(l as f32, 0.0), 0.0, v as f32).value(v as f32);
+                value.see(at32, at_fixed, value_at(v), exact);
                 // Half a tick later, after half of the change in length.
-                let later = f64.on(&f64.at(l, 2e-3), 0.5, v).value;
-                let there = f64.on(&f64.at(l + 1e-3, 0.0), 0.0, v).value;
+                let later = f64.on(&f64.at(l, 2e-3), 0.5, v).value(v);
+                let there = f64.on(&f64.at(l + 1e-3, 0.0), 0.0, v).value(v);
                 assert!((later - there).abs() < 2e-5, "L {l}, V {v}: {later} {there}");
                 if v.abs() > 1e-5 && v > p.maximum_velocity + 1e-5 {
-                    let steepness = at64(v).slope;
-                    let by_difference = slope(|v| at64(v).value, v);
+                    let steepness = slope_at(v);
+                    let by_difference = slope(value_at, v);
                     assert!((steepness - by_difference).abs() < 1e-4 * (1.0 + steepness));
-                    let bend = 2.0 * at64(v).half_curvature;
-                    let by_difference = slope(|v| at64(v).slope, v);
+                    let bend = -2.0 * slope_at(v) * at64(v).bend;
+                    let by_difference = slope(slope_at, v);
                     assert!((bend - by_difference).abs() < 1e-3 * (1.0 + bend.abs()));
                 }
             }

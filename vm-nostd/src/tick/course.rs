@@ -12,7 +12,8 @@ pub struct Course<S> {
 
 impl<S: Scalar> Course<S> {
     /// The value `time` ticks after the middle.
-    pub(crate) fn at(&self, time: S) -> S {
-        self.middle + self.change * time
+    #[inline(always)]
+    pub(crate) fn at(&self, time: S::Part) -> S {
+        self.middle + self.change.portion(time)
     }
 }

@@ -1,6 +1,6 @@
 //! Exponentials: 32-bit products, shifts and a table of powers of two.
 
-use super::number::{exact, high};
+use super::number::{exact, high, square};
 use crate::scalar::series;
 
 /// log2 e in Q2.30.
@@ -41,7 +41,7 @@ fn parts(x: i32) -> (u32, i32) {
     let y = high((rest as i32 - (1 << (31 - POWER_BITS))) << 1, LN_2);
     // 1/6 in Q0.32.
     const SIXTH: i32 = 0x2aaa_aaab;
-    let square = high(y, y);
+    let square = square(y);
     let beyond = y + (square >> 1) + high(square, high(y, SIXTH));
     let entry = POWERS_OF_TWO[index];
     let more = high((entry >> 1) as i32, beyond) << 1;

@@ -3,7 +3,7 @@
 //! Both use the table of c = 1/m at the midpoints of 64 intervals, then a series in r = m c - 1,
 //! |r| < 1/128.
 
-use super::number::high;
+use super::number::{high, square};
 use super::product;
 use crate::scalar::series;
 
@@ -61,7 +61,7 @@ fn reduced(m: u32) -> (usize, u32, i32) {
 #[inline(always)]
 pub(super) fn reciprocal(m: u32) -> u32 {
     let (_, c, r) = reduced(m);
-    let square = high(r, r);
+    let square = square(r);
     let beyond = square + (square >> 14) - r - high(r, square);
     let half = (c >> 1) as i32;
     (half as u32).wrapping_add_signed(high(half, beyond))

@@ -93,6 +93,14 @@ pub(super) fn high(a: i32, b: i32) -> i32 {
     exact(a, b).0
 }
 
+/// High word of a², rounded up and less a unit. The compiler does not know its sign: of a product
+/// of signed numbers it makes one instruction, of one with a number that it knows to be positive
+/// three.
+#[inline(always)]
+pub(super) fn square(a: i32) -> i32 {
+    !high(a, a.wrapping_neg())
+}
+
 /// Two words without their last 24 bits: rounded toward minus infinity, saturated.
 ///
 /// # Scaling and overflow

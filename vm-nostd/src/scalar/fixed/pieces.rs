@@ -28,14 +28,15 @@ const fn node(value: f64, slope: f64) -> Node {
 fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) {
     let index = ((place >> PLACE_BITS) as usize).min(NODES - 2);
     let ((start, first), (end, last)) = (nodes[index], nodes[index + 1]);
-    let share = ((place << (32 - PLACE_BITS)) >> 1) as i32;
-    let times = |coefficient: i32| high(share, coefficient) << 1;
+    // Negative, so that the compiler does not know the sign: see `square`.
+    let share = (((place << (32 - PLACE_BITS)) >> 1) as i32).wrapping_neg();
+    let less = |coefficient: i32| high(share, coefficient) << 1;
     let rise = end - start;
     let cubic = first + last - 2 * rise;
     let square = rise - first - cubic;
-    let bent = times(cubic);
-    let value = start + times(first + times(square + bent));
-    let slope = first + times(2 * square + 3 * bent);
+    let bent = less(cubic);
+    let value = start - less(first - less(square - bent));
+    let slope = first - less(2 * square - 3 * bent);
     (value, slope)
 }
 

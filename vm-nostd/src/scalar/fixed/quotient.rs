@@ -3,6 +3,7 @@
 use super::factor::Factor;
 use super::mantissa;
 use super::number::{FRACTION, exact};
+use super::product;
 
 /// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients
 /// are within 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
@@ -18,9 +19,31 @@ pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     Factor::scaled_down(reciprocal as i32, 38 - zeros)
 }
 
-/// `numerator/denominator`, within the same bound.
-pub(super) fn ratio(numerator: i32, denominator: i32) -> i32 {
-    reciprocal_factor(denominator).times(numerator)
+/// Reciprocals of two positive numbers as factors: 2^62 over the number, shifted right by `shifts`
+/// less the number of its zeros before the first bit. Within 2^-28 of their value.
+///
+/// # Scaling and overflow
+/// Shifted left until their first bit is set, both are mantissas in Q1.31; the high word of their
+/// product is shifted left by one bit unless it is one too. Its reciprocal in Q1.31, times either
+/// mantissa, is that of the other: 2^30 at least but for a rounding, and at most 2^31.
+#[inline(always)]
+pub(super) fn reciprocal_factors(numbers: [i32; 2], shifts: [u32; 2]) -> [Factor; 2] {
+    let zeros = numbers.map(|number| number.leading_zeros());
+    let [a, b] = [numbers[0] << zeros[0], numbers[1] << zeros[1]].map(i32::cast_unsigned);
+    let product = upper(a, b);
+    let short = product.leading_zeros();
+    let reciprocal = mantissa::reciprocal(product << short);
+    let of = |other, index: usize| {
+        let mantissa = (upper(other, reciprocal) << short).min(i32::MAX as u32);
+        Factor::scaled_down(mantissa as i32, shifts[index] - zeros[index])
+    };
+    [of(b, 0), of(a, 1)]
+}
+
+/// High word of an unsigned product.
+#[inline(always)]
+fn upper(a: u32, b: u32) -> u32 {
+    (product::unsigned(a, b) >> 32) as u32
 }
 
 /// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and
@@ -84,6 +107,10 @@ mod tests {
             let found = of_the_bound(reciprocal(x), UNIT / f64::from(x.max(1)));
             assert!(found <= 1.0, "1/{x}: {found} of the bound");
         }
+    }
+
+    fn ratio(numerator: i32, denominator: i32) -> i32 {
+        reciprocal_factor(denominator).times(numerator)
     }
 
     #[test]

@@ -1,20 +1,34 @@
 //! Force balance of a residual, a line and a hyperbola: a quadratic equation and its square root.
 
-use super::number::{exact, high};
+use super::number::{exact, high, square};
 use super::product;
-use super::quotient::{ratio, word};
+use super::quotient::{reciprocal_factors, word};
+use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
+/// What [`hyperbola_root`] is asked: numbers in Q8.24, all but residual and half_curvature positive.
+pub(super) struct Forces {
+    pub(super) residual: i32,
+    pub(super) line: i32,
+    pub(super) steepness: i32,
+    pub(super) half_curvature: i32,
+    pub(super) inertia: i32,
+    pub(super) viscosity: i32,
+}
+
 /// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend =
-/// -half_curvature/steepness, and 1/(1 + bend u), in Q8.24, saturated; line and steepness are
-/// positive. Both are within 2e-7, plus the effect of 2^-24 of the largest product and of the root
-/// on `whole` or `after` under cancellation.
+/// -half_curvature/steepness, and 1/(inertia + damping), damping = viscosity + steepness/(1 + bend
+/// u), in Q8.24, saturated. Both are within 2e-7, plus the effect of 2^-24 of the largest product
+/// and of the root on `whole` or `after` under cancellation; the reciprocal also within 2^-18 of the
+/// largest product, or of 2^-17, relative to `all`.
 ///
 /// # Scaling and overflow
 /// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has
 /// only its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
-/// discriminant, a square of that and four times a product, below 2^60.
-pub(super) fn hyperbola_root([residual, line, steepness, half_curvature]: [i32; 4]) -> (i32, i32) {
+/// discriminant, a square of that and four times a product, below 2^60. `whole` and `after` are
+/// below 2^31, and so is `all`, which has 8 bits fewer than these times Q8.24.
+pub(super) fn hyperbola_root(forces: &Forces) -> (i32, i32) {
+    let Forces { residual, line, steepness, half_curvature, inertia, viscosity } = *forces;
     let products = [
         exact(steepness, line),
         exact(steepness, steepness),
@@ -29,12 +43,16 @@ pub(super) fn hyperbola_root([residual, line, steepness, half_curvature]: [i32; 
     let difference = straight + bent - square;
     let discriminant =
         product::signed(difference, difference) + 4 * product::signed(straight, square);
-    let root = square_root(discriminant.max(1) as u64) as i32;
+    let root = square_root(discriminant as u64 | 1) as i32;
     // The root is at least |difference|: each sum is smaller only by rounding, and only if both of
     // its terms are large.
-    let whole = (linear + root).max(2 * straight).max(1);
-    let after = (whole + 2 * bent).max(2 * square).max(1);
-    (ratio(-2 * residual, whole), ratio(whole, after))
+    let whole = (linear + root).max(2 * straight | 1);
+    let after = (whole + 2 * bent).max(2 * square | 1);
+    // (inertia + damping) after; one reciprocal for both quotients.
+    let heavy = inertia.saturating_add(viscosity);
+    let all = high(heavy, after) + high(steepness, whole) | 1;
+    let [per_whole, per_all] = reciprocal_factors([whole, all], [37, 46]);
+    (per_whole.times(-residual), per_all.times(after))
 }
 
 /// Bits of the index into the table.
@@ -66,14 +84,20 @@ pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 /// c - 1 below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit
 /// 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
 fn square_root(x: u64) -> u32 {
-    let zeros = x.leading_zeros() & !1;
-    let m = (x << zeros >> 32) as u32;
+    let (mut upper, mut lower, mut shifted) = ((x >> 32) as u32, x as u32, 0);
+    if upper == 0 {
+        cold_path();
+        (upper, lower, shifted) = (lower, 0, 32);
+    }
+    let zeros = upper.leading_zeros() & !1;
+    let m = word((upper as i32, lower), zeros) as u32;
+    let zeros = zeros + shifted;
     let c = RECIPROCAL_ROOTS[(m >> (32 - INDEX_BITS)) as usize];
     let y = (product::unsigned(m, c) >> 32) as u32;
     let d = (product::unsigned(y, c) >> 30) as u32 as i32;
     // 3/8 in Q0.32, less 5/16 of d.
     let curved = 0x6000_0000 - (d >> 2) - (d >> 4);
-    let beyond = (d >> 1) - high(high(d, d), curved);
+    let beyond = (d >> 1) - high(square(d), curved);
     let root = y.wrapping_add_signed(-(high((y >> 1) as i32, beyond) << 1));
     root >> (zeros / 2 - 1)
 }
@@ -105,25 +129,36 @@ mod tests {
                     for step in -1000..=1000 {
                         let residual = q(f64::from(step) * 0.004);
                         let (k, s, h) = (q(line), q(steepness), q(-bend * steepness));
-                        let found = hyperbola_root([residual, k, s, h]);
+                        let (inertia, viscosity) = (q(0.3), q(0.01));
+                        let found = hyperbola_root(&Forces {
+                            residual,
+                            line: k,
+                            steepness: s,
+                            half_curvature: h,
+                            inertia,
+                            viscosity,
+                        });
                         // The same in f64, from the rounded numbers.
+                        let heavy = f(inertia) + f(viscosity);
                         let (residual, k, s, h) = (f(residual), f(k), f(s), f(h));
                         let parts = [s * k, s * s, residual * h, residual * s];
                         let linear = parts[0] + parts[1] - parts[2];
                         let difference = parts[0] + parts[2] - parts[1];
                         let root = difference.hypot((4.0 * parts[0] * parts[1]).sqrt());
                         let whole = linear + root;
-                        let exact = [-2.0 * parts[3] / whole, whole / (whole + 2.0 * parts[2])];
+                        let after = whole + 2.0 * parts[2];
+                        let exact = [-2.0 * parts[3] / whole, 1.0 / (heavy + s * whole / after)];
                         // What the largest product, or the smallest, is cut to, and the square
                         // root's error.
                         let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
                         let lost = (most + root) * 2_f64.powi(-24) + 2_f64.powi(-43);
-                        let left = [whole, whole + 2.0 * parts[2]];
-                        for ((found, exact), left) in
-                            [found.0, found.1].map(f).into_iter().zip(exact).zip(left)
+                        let all = heavy * after + s * whole;
+                        let of_all = most.max(2_f64.powi(-17)) / all * 2_f64.powi(-18);
+                        let lost = [lost / whole, lost / after.min(whole) + of_all];
+                        for ((found, exact), relative) in
+                            [found.0, found.1].map(f).into_iter().zip(exact).zip(lost)
                         {
                             let expected = exact.clamp(-128.0, 128.0);
-                            let relative = lost / left.min(whole);
                             let bound = 2e-7 + 3.0 * (1.0 + expected.abs()) * relative;
                             assert!(
                                 relative > 0.1 || (found - expected).abs() <= bound,
@@ -142,10 +177,18 @@ mod tests {
         let positive = [1, 168, 1 << 20, 1 << 24, i32::MAX];
         for (residual, half_curvature) in any.iter().flat_map(|a| any.map(|b| (*a, b))) {
             for (line, steepness) in positive.iter().flat_map(|a| positive.map(|b| (*a, b))) {
-                let (root, share) = hyperbola_root([residual, line, steepness, half_curvature]);
+                let (inertia, viscosity) = (1 << 20, 1 << 17);
+                let (root, reciprocal) = hyperbola_root(&Forces {
+                    residual,
+                    line,
+                    steepness,
+                    half_curvature,
+                    inertia,
+                    viscosity,
+                });
                 let what = format!("{residual} {line} {steepness} {half_curvature}");
                 assert!(i64::from(root) * i64::from(residual) <= 0, "{what}: {root}");
-                assert!(share >= 0, "{what}: {share}");
+                assert!(reciprocal >= 0, "{what}: {reciprocal}");
             }
         }
     }

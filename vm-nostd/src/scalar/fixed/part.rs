@@ -1,0 +1,69 @@
+//! Numbers from -1/2 to 1/2, products with which take one instruction (SMMUL) and cannot overflow.
+
+use super::factor::nearest;
+use super::number::high;
+use super::product;
+use crate::checksum::{Checksum, Summed};
+use core::ops::Add;
+
+/// A number from -1/2 to 1/2 in Q0.32.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part(i32);
+
+impl Summed for Part {
+    fn sum(&self, checksum: &mut Checksum) {
+        self.0.sum(checksum);
+    }
+}
+
+impl Part {
+    pub(super) const MINUS_HALF: Self = Self(i32::MIN);
+
+    /// The nearest; 1/2 itself would be 2^31 and is a unit less.
+    pub(super) fn new(value: f64) -> Self {
+        Self(nearest(value * 4_294_967_296.0))
+    }
+
+    /// Product with a number in any format, rounded toward minus infinity.
+    #[inline(always)]
+    pub(super) fn of(self, number: i32) -> i32 {
+        high(number, self.0)
+    }
+
+    /// The same, rounded to nearest.
+    ///
+    /// # Scaling and overflow
+    /// The product is at most 2^62: half a unit of its high word does not overflow.
+    #[inline(always)]
+    pub(super) fn rounded_of(self, number: i32) -> i32 {
+        ((product::signed(number, self.0) + (1 << 31)) >> 32) as i32
+    }
+}
+
+impl Add for Part {
+    type Output = Self;
+    /// Wraps around where the sum is 1/2, at the end of a tick, where nothing is taken of it.
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_with_parts_are_within_a_unit() {
+        for value in [-0.5, -0.3, -1e-9, 0.0, 1e-3, 0.125, 0.499_999, 0.5] {
+            let part = Part::new(value);
+            for number in [0, 1, -1, 12_345, -7_654_321, 1 << 24, i32::MAX, i32::MIN] {
+                let exact = f64::from(number) * value;
+                let left = exact - f64::from(part.of(number));
+                assert!((-0.5..1.5).contains(&left), "{number} x {value}: {left}");
+                let left = exact - f64::from(part.rounded_of(number));
+                assert!(left.abs() <= 1.0, "{number} x {value}: {left}");
+            }
+        }
+    }
+}
