@@ -49,6 +49,8 @@ pub trait Scalar:
     type LagState: Copy + Debug + PartialEq + Send + Sync;
     /// A number from -1/2 to 1/2, to multiply with: a part of a tick, or of what is of that order.
     type Part: Copy + Debug + Add<Output = Self::Part> + Summed + Send + Sync;
+    /// A number from 0 to 1, to multiply with.
+    type Unit: Copy + Debug + Send + Sync;
     /// Share, 0..1, of the distance of a lag to its target.
     type Share: Copy + Debug + Summed + Send + Sync;
     /// A musculotendon path length: m in floating point, µm in fixed point.
@@ -112,6 +114,11 @@ pub trait Scalar:
     /// Product with a part; fixed point rounds to nearest.
     #[must_use]
     fn rounded_portion(self, part: Self::Part) -> Self;
+    /// The number, clamped to 0..1 in fixed point, to multiply with.
+    fn unit(self) -> Self::Unit;
+    /// Product with a number from 0 to 1; fixed point rounds toward minus infinity, to two ULP.
+    #[must_use]
+    fn by(self, unit: Self::Unit) -> Self;
     /// Quotient by a positive number; saturates.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
@@ -144,7 +151,7 @@ pub trait Scalar:
     #[must_use]
     fn ln(self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
-    fn softplus(self) -> (Self, Self);
+    fn softplus(self) -> (Self, Self::Unit);
     /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm.
     #[must_use]
     fn weibull(self) -> Self;
@@ -286,11 +293,11 @@ pub struct Lags<T> {
 
 /// The velocity at which forces are in balance, and what holds it there.
 #[derive(Clone, Copy, Debug)]
-pub struct Balance<S> {
+pub struct Balance<S: Scalar> {
     /// The root.
     pub root: S,
     /// damping/(inertia + damping), 0..1.
-    pub damped: S,
+    pub damped: S::Unit,
     /// 1/(inertia + damping).
     pub reciprocal: S,
 }

@@ -112,7 +112,7 @@ impl<S: Scalar> Parallel<S> {
     #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
         let (value, slope) = (fascicle_length - self.slack_length).scaled(&self.per_toe).softplus();
-        (value.scaled(&self.force), slope.scaled(&self.stiffness))
+        (value.scaled(&self.force), S::ONE.by(slope).scaled(&self.stiffness))
     }
 }
 

@@ -63,11 +63,11 @@ summed!([S: Scalar] Tendon<S> { slack_path, per_path, per_toe, force, stiffness 
 
 /// Tendon force and stiffness at an extension.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pull<S> {
+pub(crate) struct Pull<S: Scalar> {
     /// F0.
     pub(crate) force: S,
     /// Share of the taut tendon's stiffness, 0..1.
-    pub(crate) tautness: S,
+    pub(crate) tautness: S::Unit,
     /// Decrease per tick of fascicles lengthening at 1 L_ce0/s, F0.
     pub(crate) stiffness: S,
     /// The extension saturated.
@@ -141,7 +141,7 @@ impl<S: Scalar> Tendon<S> {
         Pull {
             force,
             tautness: slope,
-            stiffness: slope.scaled(&self.stiffness),
+            stiffness: S::ONE.by(slope).scaled(&self.stiffness),
             saturated: toes.is_saturated() || force.is_saturated(),
         }
     }

@@ -101,7 +101,7 @@ pub(crate) struct Contraction<S: Scalar> {
     /// The slowest V_max of the types, L_ce0/s.
     slowest: S,
     /// 1 over the unit of a variance of speeds.
-    per_spread: S,
+    per_spread: S::Part,
     settled: S,
     least_steepness: S,
 }
@@ -193,7 +193,7 @@ impl<S: Scalar> Contraction<S> {
             tick_rate: S::factor(1.0 / step.seconds()),
             speed: S::from_f64(MAXIMUM_SPEED),
             slowest: S::from_f64(params.shortening_velocity()),
-            per_spread: S::from_f64(1.0 / SPREAD),
+            per_spread: S::part(1.0 / SPREAD),
             settled: S::from_f64(SETTLED),
             least_steepness: S::from_f64(LEAST_STEEPNESS),
         }
@@ -232,14 +232,14 @@ impl<S: Scalar> Contraction<S> {
             let substep = tick.substep::<R>(&mut motion, time, &mut held);
             worst = worst.max(substep.balance.abs());
             mean = mean + substep.step;
-            square = square + substep.step * (self.per_spread * substep.speed);
+            square = square + substep.step * substep.speed.portion(self.per_spread);
             time = time + self.substep.half + self.substep.half;
         }
         Advanced {
             motion,
             speed: Speed {
                 mean,
-                variance: (square - mean * (self.per_spread * mean)).max(S::ZERO),
+                variance: (square - mean * mean.portion(self.per_spread)).max(S::ZERO),
             },
             settled: worst <= self.settled,
             held,
@@ -284,8 +284,8 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         let foreseen = motion.travel + start.portion(half);
         let extension = self.extension.at(time);
         let pull = c.tendon.pull(extension - c.lengthening(foreseen));
-        let stiffness = substep.taut * pull.tautness;
-        let inertia = substep.inertia - substep.fitted * pull.tautness;
+        let stiffness = substep.taut.by(pull.tautness);
+        let inertia = substep.inertia - substep.fitted.by(pull.tautness);
         // What does not depend on velocity: inertia (V - start) - F_se is this and a slope times V.
         let slope = inertia + stiffness;
         let momentum = slope * start;
@@ -340,7 +340,7 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
             (steepness, half_curvature) = (S::ZERO, S::ZERO);
         }
 
-        let balance = constant + momentum.of_sign(!lengthening) + force;
+        let balance = constant + slope * velocity + force;
         let line = slope + (viscosity + elastic);
         let steepness = steepness.max(c.least_steepness);
         let balanced = balance.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);

@@ -24,9 +24,11 @@ pub(super) struct Left<S> {
 pub(super) fn left<S: Scalar>(balanced: &Balance<S>, gained: S, growing: S) -> Left<S> {
     let s = balanced.damped;
     // What was gained beyond the steady velocity's part, times s.
-    let difference = s * gained - growing * balanced.reciprocal;
-    let back = s * s * (S::ONE + S::ONE - s) * difference;
-    Left { end: gained - back, mean: s * (S::ONE - s).half() * back }
+    let difference = gained.by(s) - growing * balanced.reciprocal;
+    let share = S::ONE.by(s);
+    let squared = share.by(s);
+    let back = (squared + squared - squared.by(s)) * difference;
+    Left { end: gained - back, mean: (share - squared).half() * back }
 }
 
 #[cfg(test)]

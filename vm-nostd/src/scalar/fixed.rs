@@ -12,12 +12,14 @@ mod polynomial;
 mod product;
 mod quotient;
 mod root;
+mod unit;
 
 pub use factor::Factor;
 pub use number::Fixed;
 #[cfg(test)]
 pub(crate) use number::saturations;
 pub use part::Part;
+pub use unit::Unit;
 
 use super::sealed::Sealed;
 use super::{Balance, Lags, Scalar};
@@ -53,6 +55,7 @@ impl Scalar for Fixed {
     type Bits = u32;
     type Factor = Factor;
     type Part = Part;
+    type Unit = Unit;
     /// Q8.56.
     type LagState = i64;
     /// Q0.32.
@@ -115,6 +118,14 @@ impl Scalar for Fixed {
     fn rounded_portion(self, part: Part) -> Self {
         Self::from_bits(part.rounded_of(self.to_bits()))
     }
+    #[inline(always)]
+    fn unit(self) -> Unit {
+        Unit::new(self.to_bits())
+    }
+    #[inline(always)]
+    fn by(self, unit: Unit) -> Self {
+        Self::from_bits(unit.of(self.to_bits()))
+    }
     fn ratio(self, divisor: Self) -> Self {
         self.scaled(&divisor.reciprocal_factor())
     }
@@ -171,20 +182,17 @@ impl Scalar for Fixed {
         Self::from_bits(mantissa::ln(self.to_bits()))
     }
     #[inline(always)]
-    fn softplus(self) -> (Self, Self) {
+    fn softplus(self) -> (Self, Unit) {
         let (value, slope) = pieces::softplus(self.to_bits());
-        (Self::from_bits(value), Self::from_bits(slope))
+        (Self::from_bits(value), slope)
     }
     fn weibull(self) -> Self {
         Self::from_bits(pieces::weibull(self.to_bits()))
     }
     #[inline(always)]
-    fn reciprocals_of_one_plus<const N: usize>(self, mut factors: [Self; N]) -> [Self; N] {
-        for factor in &mut factors {
-            let reciprocal = quotient::reciprocal_of_one_plus(factor.to_bits(), self.to_bits());
-            *factor = Self::from_bits(reciprocal);
-        }
-        factors
+    fn reciprocals_of_one_plus<const N: usize>(self, factors: [Self; N]) -> [Self; N] {
+        quotient::reciprocals_of_one_plus(factors.map(Self::to_bits), self.to_bits())
+            .map(Self::from_bits)
     }
     #[inline(always)]
     fn is_between_0_and(self, end: Self) -> bool {
@@ -219,7 +227,7 @@ impl Scalar for Fixed {
         let reciprocal = Self::from_bits(reciprocal);
         Balance {
             root: Self::from_bits(root),
-            damped: Self::ONE - inertia * reciprocal,
+            damped: (Self::ONE - inertia * reciprocal).unit(),
             reciprocal,
         }
     }

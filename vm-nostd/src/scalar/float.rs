@@ -17,6 +17,7 @@ macro_rules! float {
             type Bits = $bits;
             type Factor = Self;
             type Part = Self;
+            type Unit = Self;
             type LagState = Self;
             type Share = Self;
             type PathLength = Self;
@@ -69,6 +70,12 @@ macro_rules! float {
             }
             fn rounded_portion(self, part: Self) -> Self {
                 self * part
+            }
+            fn unit(self) -> Self {
+                self
+            }
+            fn by(self, unit: Self) -> Self {
+                self * unit
             }
             fn ratio(self, divisor: Self) -> Self {
                 self / divisor

@@ -67,6 +67,38 @@ pub(super) fn reciprocal(m: u32) -> u32 {
     (half as u32).wrapping_add_signed(high(half, beyond))
 }
 
+/// The same of several mantissas by one reciprocal, that of their product; within 8 units of two.
+///
+/// # Scaling and overflow
+/// The product of two mantissas is a mantissa, or twice one: its high word in Q1.31 is shifted left
+/// by 0 or 1 bit. Its reciprocal times either, shifted by as much, is the reciprocal of the other.
+#[inline(always)]
+pub(super) fn reciprocals<const N: usize>(mantissas: [u32; N]) -> [u32; N] {
+    let mut products = mantissas;
+    let mut shorts = [0; N];
+    for index in 1..N {
+        let product = upper(products[index - 1], mantissas[index]);
+        shorts[index] = 1 - (product >> 31);
+        products[index] = product << shorts[index];
+    }
+    let mut found = mantissas;
+    let mut rest = products.last().map_or(0, |&product| reciprocal(product));
+    for index in (1..N).rev() {
+        found[index] = upper(rest, products[index - 1]) << shorts[index];
+        rest = upper(rest, mantissas[index]) << shorts[index];
+    }
+    if let Some(first) = found.first_mut() {
+        *first = rest;
+    }
+    found
+}
+
+/// High word of an unsigned product.
+#[inline(always)]
+fn upper(a: u32, b: u32) -> u32 {
+    (product::unsigned(a, b) >> 32) as u32
+}
+
 /// ln 2 in Q1.31.
 const LN_2: i32 = 1_488_522_236;
 
@@ -101,6 +133,18 @@ mod tests {
             if found <= 1 << 31 { error } else { f64::NAN }
         });
         assert!(found <= 3.0, "{found} units");
+    }
+
+    #[test]
+    fn reciprocals_by_one_are_within_eight_ulp() {
+        let numbers: Vec<u32> =
+            super::super::every::of_any_length().map(|m| m as u32 | 1 << 31).take(1000).collect();
+        for m in numbers.iter().flat_map(|a| numbers.iter().map(|b| [*a, *b])) {
+            for (found, m) in reciprocals(m).into_iter().zip(m) {
+                let error = f64::from(found) - 2_f64.powi(62) / f64::from(m);
+                assert!(error.abs() <= 8.0, "{m}: {error} units");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Softplus and Weibull's distribution: cubic interpolation between compile-time nodes.
 
 use super::number::high;
+use super::unit::Unit;
 use crate::scalar::series;
 
 /// Nodes per unit of the argument, as a power of two.
@@ -40,11 +41,9 @@ fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) 
     (value, slope)
 }
 
-/// Converts a value and a slope per piece in Q2.30 to a value and a slope per unit in Q8.24;
-/// rounds.
-fn in_units((value, slope): (i32, i32)) -> (i32, i32) {
-    let rounded = |value: i32, bits: u32| (value + (1 << (bits - 1))) >> bits;
-    (rounded(value, 6), rounded(slope, 6 - NODE_BITS))
+/// A value in Q2.30 in Q8.24; rounds.
+fn in_units(value: i32) -> i32 {
+    (value + (1 << 5)) >> 6
 }
 
 /// Beyond this distance from 0, the tail of softplus is below half an ULP.
@@ -65,10 +64,18 @@ static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
 };
 
 /// ln(e^x + 1), saturated, within 2 units, and the logistic function of x, within 2.1e-6.
+///
+/// # Scaling and overflow
+/// The slope of the tail, by pieces in Q2.30, is from -2^26 to 0, but for a rounding that is cut
+/// off; by units, in Q1.31, from -2^30 to 0.
 #[inline(always)]
-pub(super) fn softplus(x: i32) -> (i32, i32) {
-    let (tail, slope) = in_units(between(&SOFTPLUS, x.unsigned_abs()));
-    if x > 0 { (x.saturating_add(tail), super::number::ONE + slope) } else { (tail, -slope) }
+pub(super) fn softplus(x: i32) -> (i32, Unit) {
+    let (tail, slope) = between(&SOFTPLUS, x.unsigned_abs());
+    let tail = in_units(tail);
+    let slope = (slope & (slope >> 31)) << (NODE_BITS + 1);
+    let (value, slope) =
+        if x > 0 { (x.saturating_add(tail), i32::MAX + slope) } else { (tail, -slope) };
+    (value, Unit::from_bits(slope))
 }
 
 const WEIBULL_LEAST: i32 = -18;
@@ -94,7 +101,7 @@ static WEIBULL: [Node; WEIBULL_NODES] = {
 /// node on is x and 18: saturated, it is beyond the last node.
 pub(super) fn weibull(x: i32) -> i32 {
     let place = x.saturating_sub(WEIBULL_LEAST << 24).max(0);
-    in_units(between(&WEIBULL, place as u32)).0
+    in_units(between(&WEIBULL, place as u32).0)
 }
 
 /// Bytes of the two tables.
@@ -114,7 +121,7 @@ mod tests {
             let expected = ((exact.max(0.0) + power.ln_1p()) * UNIT).min(f64::from(i32::MAX));
             let logistic = if x > 0 { 1.0 } else { power } / (1.0 + power);
             let (value, slope) = softplus(x);
-            let steepness = (f64::from(slope) / UNIT - logistic).abs();
+            let steepness = (f64::from(slope.to_bits()) / 2_f64.powi(31) - logistic).abs();
             ((f64::from(value) - expected).abs() / 2.0).max(steepness / 2.1e-6)
         });
         assert!(found <= 1.0, "{found} of the bounds");

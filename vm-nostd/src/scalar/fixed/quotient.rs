@@ -3,7 +3,7 @@
 use super::factor::Factor;
 use super::mantissa;
 use super::number::{FRACTION, exact};
-use super::product;
+use core::array::from_fn;
 
 /// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients
 /// are within 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
@@ -23,27 +23,17 @@ pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
 /// less the number of its zeros before the first bit. Within 2^-28 of their value.
 ///
 /// # Scaling and overflow
-/// Shifted left until their first bit is set, both are mantissas in Q1.31; the high word of their
-/// product is shifted left by one bit unless it is one too. Its reciprocal in Q1.31, times either
-/// mantissa, is that of the other: 2^30 at least but for a rounding, and at most 2^31.
+/// Shifted left until their first bit is set, both are mantissas in Q1.31, and so are their
+/// reciprocals, of which 2^31 is a unit less.
 #[inline(always)]
 pub(super) fn reciprocal_factors(numbers: [i32; 2], shifts: [u32; 2]) -> [Factor; 2] {
     let zeros = numbers.map(|number| number.leading_zeros());
     let [a, b] = [numbers[0] << zeros[0], numbers[1] << zeros[1]].map(i32::cast_unsigned);
-    let product = upper(a, b);
-    let short = product.leading_zeros();
-    let reciprocal = mantissa::reciprocal(product << short);
-    let of = |other, index: usize| {
-        let mantissa = (upper(other, reciprocal) << short).min(i32::MAX as u32);
+    let reciprocals = mantissa::reciprocals([a, b]);
+    from_fn(|index| {
+        let mantissa = reciprocals[index].min(i32::MAX as u32);
         Factor::scaled_down(mantissa as i32, shifts[index] - zeros[index])
-    };
-    [of(b, 0), of(a, 1)]
-}
-
-/// High word of an unsigned product.
-#[inline(always)]
-fn upper(a: u32, b: u32) -> u32 {
-    (product::unsigned(a, b) >> 32) as u32
+    })
 }
 
 /// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and
@@ -73,21 +63,29 @@ pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
-/// 1/(1 + d v) in Q8.24, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts as that, to
-/// 2^-16.
+/// 1/(1 + d v) in Q8.24 of each d, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts as
+/// that, to 2^-16.
 ///
 /// # Scaling and overflow
 /// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.
 /// Shifted left by z bits, 1 to 22, it is a mantissa; its reciprocal in Q1.31, shifted right by
 /// 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is a unit less.
 #[inline(always)]
-pub(super) fn reciprocal_of_one_plus(d: i32, v: i32) -> i32 {
+pub(super) fn reciprocals_of_one_plus<const N: usize>(d: [i32; N], v: i32) -> [i32; N] {
     const ONE: i32 = 1 << 16;
-    let (high, low) = exact(d, v);
-    let sum = ((high + ONE).max(ONE >> 7), low);
-    let zeros = sum.0.leading_zeros();
-    let reciprocal = mantissa::reciprocal(word(sum, zeros) as u32);
-    scaled_back(reciprocal, 22 - zeros)
+    let (mut mantissas, mut zeros) = ([0; N], [0; N]);
+    for index in 0..N {
+        let (high, low) = exact(d[index], v);
+        let sum = ((high + ONE).max(ONE >> 7), low);
+        zeros[index] = sum.0.leading_zeros();
+        mantissas[index] = word(sum, zeros[index]) as u32;
+    }
+    let found = mantissa::reciprocals(mantissas);
+    let mut reciprocals = [0; N];
+    for index in 0..N {
+        reciprocals[index] = scaled_back(found[index], 22 - zeros[index]);
+    }
+    reciprocals
 }
 
 #[cfg(test)]
@@ -133,7 +131,8 @@ mod tests {
             for v in numbers().take(2_000) {
                 let sum = 1.0 + f64::from(d) / UNIT * (f64::from(v) / UNIT);
                 let exact = 1.0 / sum.max(2_f64.powi(-7));
-                let found = f64::from(reciprocal_of_one_plus(d, v)) / UNIT;
+                let [found, _] =
+                    reciprocals_of_one_plus([d, v], v).map(|bits| f64::from(bits) / UNIT);
                 // The least sum is told from its high word: by 2^-16 at most.
                 let least =
                     if sum < 2_f64.powi(-7) { exact * exact * 2_f64.powi(-16) } else { 0.0 };

@@ -27,6 +27,7 @@ pub(super) struct Forces {
 /// only its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
 /// discriminant, a square of that and four times a product, below 2^60. `whole` and `after` are
 /// below 2^31, and so is `all`, which has 8 bits fewer than these times Q8.24.
+#[inline(always)]
 pub(super) fn hyperbola_root(forces: &Forces) -> (i32, i32) {
     let Forces { residual, line, steepness, half_curvature, inertia, viscosity } = *forces;
     let products = [
@@ -83,6 +84,7 @@ pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 /// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y
 /// c - 1 below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit
 /// 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
+#[inline(always)]
 fn square_root(x: u64) -> u32 {
     let (mut upper, mut lower, mut shifted) = ((x >> 32) as u32, x as u32, 0);
     if upper == 0 {
