@@ -142,7 +142,12 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
         }
     }
 
-    let lags = x.map(S::lags);
+    // A loop, because closures over arrays are called.
+    let none = Lags { response: S::share(0.0), delayed: S::share(0.0) };
+    let mut lags = [[none; 2]; N];
+    for (lags, x) in lags.iter_mut().zip(x) {
+        *lags = x.lags();
+    }
     let lag = types.each_ref().map(|t| S::of(t.effective) - t.drive);
     let middle: [S; N] = from_fn(|i| {
         let Lags { response, delayed } = lags[i][0];
