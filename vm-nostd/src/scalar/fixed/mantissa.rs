@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn reciprocals_by_one_are_within_eight_ulp() {
         let numbers: Vec<u32> =
-            super::super::every::of_any_length().map(|m| m as u32 | 1 << 31).take(1000).collect();
+            super::super::every::of_any_length().map(|m| m as u32 | (1 << 31)).take(1000).collect();
         for m in numbers.iter().flat_map(|a| numbers.iter().map(|b| [*a, *b])) {
             for (found, m) in reciprocals(m).into_iter().zip(m) {
                 let error = f64::from(found) - 2_f64.powi(62) / f64::from(m);

@@ -47,11 +47,11 @@ pub(super) fn hyperbola_root(forces: &Forces) -> (i32, i32) {
     let root = square_root(discriminant as u64 | 1) as i32;
     // The root is at least |difference|: each sum is smaller only by rounding, and only if both of
     // its terms are large.
-    let whole = (linear + root).max(2 * straight | 1);
-    let after = (whole + 2 * bent).max(2 * square | 1);
+    let whole = (linear + root).max((2 * straight) | 1);
+    let after = (whole + 2 * bent).max((2 * square) | 1);
     // (inertia + damping) after; one reciprocal for both quotients.
     let heavy = inertia.saturating_add(viscosity);
-    let all = high(heavy, after) + high(steepness, whole) | 1;
+    let all = (high(heavy, after) + high(steepness, whole)) | 1;
     let [per_whole, per_all] = reciprocal_factors([whole, all], [37, 46]);
     (per_whole.times(-residual), per_all.times(after))
 }
