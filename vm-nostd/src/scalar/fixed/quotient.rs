@@ -63,8 +63,8 @@ pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
-/// 1/(1 + d v) in Q8.24 of each d, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts as
-/// that, to 2^-16.
+/// 1/(1 + d v) in Q8.24 of each d, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts
+/// as that, to 2^-16.
 ///
 /// # Scaling and overflow
 /// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.

@@ -6,7 +6,8 @@ use super::quotient::{reciprocal_factors, word};
 use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
-/// What [`hyperbola_root`] is asked: numbers in Q8.24, all but residual and half_curvature positive.
+/// What [`hyperbola_root`] is asked: numbers in Q8.24, positive but for residual and
+/// half_curvature.
 pub(super) struct Forces {
     pub(super) residual: i32,
     pub(super) line: i32,
@@ -19,8 +20,8 @@ pub(super) struct Forces {
 /// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend =
 /// -half_curvature/steepness, and 1/(inertia + damping), damping = viscosity + steepness/(1 + bend
 /// u), in Q8.24, saturated. Both are within 2e-7, plus the effect of 2^-24 of the largest product
-/// and of the root on `whole` or `after` under cancellation; the reciprocal also within 2^-18 of the
-/// largest product, or of 2^-17, relative to `all`.
+/// and of the root on `whole` or `after` under cancellation; the reciprocal also within 2^-18 of
+/// the largest product, or of 2^-17, relative to `all`.
 ///
 /// # Scaling and overflow
 /// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has
