@@ -221,8 +221,9 @@ impl Case {
 pub fn scenarios() -> Vec<Scenario> {
     let paper = paper_muscle();
     let mut all = scenario::all();
-    // Their ticks are no more demanding than those of `velocity_kinks` and the adversarial run.
-    let without = ["yield", "fast_ramps"];
+    // Their ticks are no more demanding than those of `velocity_kinks`, `fes_steps` and the
+    // adversarial run.
+    let without = ["yield", "fast_ramps", "fes_doublets", "fes_variable_trains"];
     all.retain(|scenario| {
         let left_out = without.iter().any(|name| scenario.name.starts_with(name));
         !scenario.name.contains('@') && !left_out && scenario.muscle == paper
