@@ -442,6 +442,46 @@ fn saved_states_continue_with_the_same_bits() {
     saved::<Fixed>();
 }
 
+/// A small change of any parameter changes the checksum of the coefficients, also of what only the
+/// muscles' inverse has; and every tick that of the state.
+#[test]
+fn checksums_cover_controller_and_state() {
+    let sum = |params: &FesControllerParams<2>| {
+        FesController::<f32, 2>::build(params, STEP).expect("a controller").checksum()
+    };
+    let of_types: [fn(&mut vm_nostd::FiberType); 4] = [
+        |t| t.activation.scale *= 1.01,
+        |t| t.force_length.width *= 1.01,
+        |t| t.half_force_frequency *= 1.01,
+        |t| t.excitation.rise *= 1.01,
+    ];
+    for change in of_types {
+        let mut changed = params();
+        change(&mut changed.muscles[1].fibers[0].fiber_type);
+        assert_ne!(sum(&params()), sum(&changed));
+    }
+    let of_controllers: [fn(&mut FesControllerParams<2>); 7] = [
+        |p| p.muscles[0].elements.tendon.stiffness *= 1.01,
+        |p| p.muscles[0].elements.parallel.stiffness *= 1.01,
+        |p| p.electrodes[1].slope *= 1.01,
+        |p| p.limb.gravity += 0.1,
+        |p| p.cocontraction += 0.1,
+        |p| p.stimulation_frequency += 0.1,
+        |p| p.feedback.proportional += 0.1,
+    ];
+    for change in of_controllers {
+        let mut changed = params();
+        change(&mut changed);
+        assert_ne!(sum(&params()), sum(&changed));
+    }
+    let controller = FesController::<f32, 2>::build(&params(), STEP).expect("a controller");
+    let mut state = controller.start(0.5);
+    let before = (state.checksum(), state.words().count());
+    controller.step(&mut state, still(0.6), sensed(0.5));
+    assert_ne!(state.checksum(), before.0);
+    assert_eq!(state.words().count(), before.1);
+}
+
 /// The muscle of the model, held at the activation that the inverse names, has the wanted force.
 fn natural<S: Scalar>(within: f64) {
     for muscle in [firmware::MUSCLE, KNEE.muscles[1].params(), ANKLE.muscles[0].params()] {

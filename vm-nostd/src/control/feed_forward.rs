@@ -39,6 +39,13 @@ pub(super) struct InverseState<S: Scalar> {
     pub(super) fatigue: Option<FatigueState<S>>,
 }
 
+impl<S: Scalar> InverseState<S> {
+    pub(super) fn words(&self) -> impl Iterator<Item = S::Bits> {
+        let tired = self.fatigue.iter().flat_map(FatigueState::words);
+        self.lead.words().chain(tired)
+    }
+}
+
 /// Torques of the antagonists.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares<S> {

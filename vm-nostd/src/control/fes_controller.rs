@@ -194,6 +194,24 @@ impl<S: Scalar> FesControllerState<S> {
     pub fn gain(&self) -> S {
         S::of(self.gain)
     }
+
+    /// Its bits, for comparison; [`FesController::save`] adds the fingerprints.
+    pub fn words(&self) -> impl Iterator<Item = S::Bits> {
+        let Self { target, angle, measured, expected, feedback, gain, saturated, inverses } = self;
+        let own = [*target, *angle, *measured].map(S::to_bits);
+        own.into_iter()
+            .chain(core::iter::once(S::Bits::from(saturated.bits())))
+            .chain([*expected, *gain].into_iter().flat_map(S::lag_state_words))
+            .chain(feedback.words())
+            .chain(inverses.iter().flat_map(InverseState::words))
+    }
+
+    /// Checksum of all words, see [`FesController::checksum`].
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.words().for_each(|word| word.sum(&mut checksum));
+        checksum.value()
+    }
 }
 
 /// Distinguishes saved controllers: no mode has this number.
@@ -277,6 +295,13 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             most_motion: S::from_f64(MOST_MOTION),
             most_torque: S::from_f64(MOST_TORQUE / TORQUE_UNIT),
         })
+    }
+
+    /// Checksum of all coefficients, see [`Muscle::checksum`](crate::Muscle::checksum).
+    pub fn checksum(&self) -> u32 {
+        let mut checksum = Checksum::EMPTY;
+        self.sum(&mut checksum);
+        checksum.value()
     }
 
     /// A controller that starts at an angle (rad), clipped to the joint's range, with rested
@@ -474,8 +499,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
 
     /// The words of a saved state: a fingerprint of the controller, and the state.
     pub fn save(&self, state: &FesControllerState<S>) -> impl Iterator<Item = S::Bits> {
-        let Saturated { above, below } = state.saturated;
-        let saturated = u32::from(above) + 2 * u32::from(below);
+        let saturated = state.saturated.bits();
         let own = [state.target, state.angle, state.measured].map(S::to_bits);
         let slow = [state.expected, state.gain];
         let tired = self.inverses.iter().zip(&state.inverses).filter_map(|(inverse, state)| {

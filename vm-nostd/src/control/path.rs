@@ -72,6 +72,18 @@ pub enum Action {
 
 /// A path as a polynomial of `J` joint angles, 1 or 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+// serde implements its traits for arrays of certain lengths only.
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "[f64; J]: serde::Serialize, [[f64; ORDER]; J]: serde::Serialize, \
+                     [Action; J]: serde::Serialize",
+        deserialize = "[f64; J]: serde::Deserialize<'de>, \
+                       [[f64; ORDER]; J]: serde::Deserialize<'de>, \
+                       [Action; J]: serde::Deserialize<'de>"
+    ))
+)]
 pub struct PathParams<const J: usize> {
     /// Path length at the reference angles, m; more than 0, to 4.
     pub length: f64,

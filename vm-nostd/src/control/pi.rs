@@ -50,6 +50,13 @@ pub struct Saturated {
     pub below: bool,
 }
 
+impl Saturated {
+    /// Bit 0: above; bit 1: below.
+    pub(super) fn bits(self) -> u32 {
+        u32::from(self.above) + 2 * u32::from(self.below)
+    }
+}
+
 /// Feedback.
 #[derive(Clone, Copy, Debug)]
 pub struct Pi<S: Scalar> {
