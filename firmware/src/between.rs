@@ -4,6 +4,7 @@ pub(crate) mod fault;
 pub(crate) mod guarded;
 pub(crate) mod limits;
 pub(crate) mod link_queues;
+pub(crate) mod motion;
 pub(crate) mod permission;
 pub(crate) mod plan;
 pub(crate) mod shared;

@@ -5,7 +5,7 @@
 //! | converter (like MCP4921; no readback) | SPI1: SCK PA5, MOSI PA7, chip select PA4 |
 //! | bridge | cathodic PB0, anodic PB1 |
 //! | channels | PC0, PC1, PC2, PC3 |
-//! | link | USART1: TX PA9, RX PA10, 115,200 Bd |
+//! | link | USART1: TX PA9, RX PA10, 460,800 Bd |
 //! | pulse timer, tick | TIM2, SysTick |
 //! | crystal | 8 MHz |
 //! | stored muscles | the last two sectors of flash, 128 KiB each |
@@ -24,7 +24,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 use firmware::flash::Flash;
 use firmware::safety::{CHANNELS, Fault};
-use firmware::{Bridge, OutputStage, Pulses};
+use firmware::{Bridge, LEAST_PHASE_US, OutputStage, Pulses};
 pub use memory::{EmulatedFlash, Memory};
 pub use noise::Numbers;
 use stm32f4xx_hal::gpio::{ErasedPin, Output, PushPull, Speed};
@@ -43,9 +43,10 @@ pub type Converter = ExclusiveDevice<Spi<SPI1>, Pin, NoDelay>;
 /// The output stage.
 pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
-/// Baud rate of the link. A byte takes longer than the tick that may delay its interrupt: none is
-/// lost.
-const BAUD: u32 = 115_200;
+/// Baud rate of the link. A byte takes 21.7 µs: longer than the pulse timer's interrupt, which alone
+/// may delay its own, and whose deadline is the shortest phase. None is lost.
+const BAUD: u32 = 460_800;
+const _: () = assert!(10_000_000 / BAUD > LEAST_PHASE_US, "bytes that the pulse timer loses");
 
 /// The emulator's TIM2 counts ns.
 const EMULATED_TIMER_CLOCK: u32 = 1_000_000_000;

@@ -35,6 +35,7 @@ pub use between::step::Step;
 pub use between::stimulus::{LEAST_PHASE_US, Scale, Stimulus, StimulusError};
 pub use between::waveform::{Direction, Phase, Pulse};
 pub use config::{MUSCLES, SCALE, TICK_US, TYPES};
+pub use hard_tick::angle_sensor::{AngleSensor, HostSensor};
 pub use hard_tick::controller::Controller;
 pub use hard_tick::deadline::Deadline;
 pub use hard_tick::device::Device;

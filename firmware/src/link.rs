@@ -7,6 +7,7 @@
 //! next sequence number and a complete message is acted upon; everything else is counted and
 //! answered with a [`LinkError`].
 
+mod control;
 mod error;
 pub mod flash;
 pub(crate) mod flash_times;
@@ -19,6 +20,8 @@ mod session;
 pub(crate) mod storage;
 pub(crate) mod uploads;
 
+pub use crate::between::motion::{AngleReading, Target};
+pub use control::{Commanded, ControlUpload, Modulation};
 pub use error::{Counters, LinkError};
 pub use frame::{
     Frame, MOST_CONTENT, MOST_FRAME, NO_SESSION, Receiver, SessionNumber, VERSION, encode,

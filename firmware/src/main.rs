@@ -1,10 +1,13 @@
 //! The stimulator: three interrupt levels, of which none waits for another, and idle.
 //!
+//! A byte comes faster than a tick ends, so that its interrupt is above the tick. It only puts the
+//! byte into a queue for idle.
+//!
 //! | priority | task | by |
 //! |---:|---|---|
-//! | 3 | pulses | the pulse timer |
+//! | 4 | pulses | the pulse timer |
+//! | 3 | bytes from the host | the serial port |
 //! | 2 | muscles and supervision | the tick |
-//! | 1 | bytes from the host | the serial port |
 //! | 0 | link, storage, log | idle |
 #![no_std]
 #![no_main]
@@ -111,7 +114,7 @@ mod app {
     }
 
     /// A step of the schedule begins, or the tick calls. Deadline: [`firmware::LEAST_PHASE_US`].
-    #[task(binds = TIM2, priority = 3, local = [pulses, pulse_timer])]
+    #[task(binds = TIM2, priority = 4, local = [pulses, pulse_timer])]
     fn pulse(context: pulse::Context) {
         let pulse::LocalResources { pulses, pulse_timer, .. } = context.local;
         if !pulse_timer.has_run_out() {
@@ -143,8 +146,8 @@ mod app {
         }
     }
 
-    /// Receives a byte. A byte takes longer than the tick that may delay this.
-    #[task(binds = USART1, priority = 1, local = [from_host, received])]
+    /// Receives a byte. A byte takes longer than the pulse that may delay this.
+    #[task(binds = USART1, priority = 3, local = [from_host, received])]
     fn receive(context: receive::Context) {
         let receive::LocalResources { from_host, received, .. } = context.local;
         if let Some(byte) = from_host.read() {

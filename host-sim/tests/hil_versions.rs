@@ -46,14 +46,17 @@ fn of_version(version: u8, message: &Message<'_>) -> Vec<u8> {
 
 #[test]
 fn the_error_names_both_versions_and_the_remedy() {
-    let expected = format!(
-        "the device has version 1 of the link's protocol, this program version {VERSION}: \
-         flash the firmware of this program's version"
-    );
-    // An older device answers in its own version, or reports the difference itself.
-    let refusal = Message::NotActedUpon(LinkError::Version { got: VERSION, known: 1 });
-    for said in [of_version(1, &refusal), of_version(VERSION, &refusal)] {
-        let error = Client::new(Says(said)).greet().expect_err("another version");
-        assert_eq!(error.to_string(), expected);
+    assert_eq!(VERSION, 4);
+    for device in 1..VERSION {
+        let expected = format!(
+            "the device has version {device} of the link's protocol, this program version 4: \
+             flash the firmware of this program's version"
+        );
+        // An older device answers in its own version, or reports the difference itself.
+        let refusal = Message::NotActedUpon(LinkError::Version { got: VERSION, known: device });
+        for said in [of_version(device, &refusal), of_version(VERSION, &refusal)] {
+            let error = Client::new(Says(said)).greet().expect_err("another version");
+            assert_eq!(error.to_string(), expected);
+        }
     }
 }

@@ -142,8 +142,8 @@ fn errors_on_real_muscle_are_those_of_the_fits() {
 #[test]
 fn the_readme_states_the_link_rate_of_the_firmware() {
     let firmware = read(&root().join("firmware/README.md"));
-    assert!(firmware.contains("360 rows"), "firmware/README.md");
-    assert!(read(&root().join("README.md")).contains("at most 360 rows per second"));
+    assert!(firmware.contains("1440 rows"), "firmware/README.md");
+    assert!(read(&root().join("README.md")).contains("at most 1440 rows per second"));
 }
 
 #[test]

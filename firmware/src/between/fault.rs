@@ -27,7 +27,7 @@ pub enum Fault {
     ElectrodeOpen,
     /// The supply voltage is out of range.
     Supply,
-    /// The sensor gives no reading, or the last one is too old.
+    /// A sensor gives no reading, or the last one is too old.
     SensorMissing,
     /// The reading is out of range.
     SensorRange,
@@ -51,6 +51,12 @@ pub enum Fault {
     StaleRow,
     /// The drive in force is too old: the host did not repeat it.
     StaleDrive,
+    /// Time stamps of the joint's angle contradict its stated rate or the ticks.
+    SensorTime,
+    /// The target in force is too old.
+    StaleTarget,
+    /// The controller's estimate of the muscles' gain is out of its range or not finite.
+    Gain,
 }
 
 impl Fault {

@@ -45,6 +45,16 @@ pub struct Limits {
     pub rows_ms: u32,
     /// Greatest age of a drive, ms; a tick or more. Hosts repeat drives.
     pub drives_ms: u32,
+    /// Greatest age of a controller's target, ms; a tick or more.
+    pub targets_ms: u32,
+    /// Greatest age of a reading of the joint's angle, ms; a tick or more. It also bounds how much
+    /// later or earlier readings may come than their time stamps say.
+    pub angle_ms: u32,
+    /// Greatest angle beyond the range of the joint, mrad; to 6,300.
+    pub angle_beyond_mrad: u32,
+    /// Greatest speed of the joint from one reading to the next, mrad/s; 1 or more. A change of 50
+    /// mrad is always allowed: sensors have noise.
+    pub angle_speed_mrad_s: u32,
     /// Impedance of each electrode that stimulates, Ω: below is a short, above an open electrode.
     /// An electrode that was not measured yet is allowed, because measuring takes pulses.
     pub impedance_ohm: (u32, u32),
@@ -98,6 +108,10 @@ impl Limits {
         readings_ms: 200,
         rows_ms: 50,
         drives_ms: 1_000,
+        targets_ms: 100,
+        angle_ms: 30,
+        angle_beyond_mrad: 175,
+        angle_speed_mrad_s: 20_000,
         impedance_ohm: (100, 5_000),
         supply_mv: (3_000, 4_300),
         path_um: (50_000, 500_000),
@@ -145,6 +159,10 @@ impl Limits {
             check("readings_ms", self.readings_ms as i64, tick_ms, ever),
             check("rows_ms", self.rows_ms as i64, tick_ms, ever),
             check("drives_ms", self.drives_ms as i64, tick_ms, ever),
+            check("targets_ms", self.targets_ms as i64, tick_ms, ever),
+            check("angle_ms", self.angle_ms as i64, tick_ms, ever),
+            check("angle_beyond_mrad", self.angle_beyond_mrad as i64, 0, 6_300),
+            check("angle_speed_mrad_s", self.angle_speed_mrad_s as i64, 1, ever),
             check("impedance_ohm", self.impedance_ohm.0 as i64, 0, self.impedance_ohm.1 as i64),
             check("supply_mv", self.supply_mv.0 as i64, 0, self.supply_mv.1 as i64),
             check("path_um", self.path_um.0 as i64, i32::MIN as i64, self.path_um.1 as i64),
@@ -195,6 +213,10 @@ impl Sum for Limits {
             readings_ms,
             rows_ms,
             drives_ms,
+            targets_ms,
+            angle_ms,
+            angle_beyond_mrad,
+            angle_speed_mrad_s,
             impedance_ohm,
             supply_mv,
             path_um,
@@ -214,6 +236,10 @@ impl Sum for Limits {
             readings_ms,
             rows_ms,
             drives_ms,
+            targets_ms,
+            angle_ms,
+            angle_beyond_mrad,
+            angle_speed_mrad_s,
             impedance_ohm.0,
             impedance_ohm.1,
             supply_mv.0,
@@ -270,6 +296,10 @@ mod tests {
             (|l| l.readings_ms = 0, "limit readings_ms = 0: must be 1 to 4294967295"),
             (|l| l.rows_ms = 0, "limit rows_ms = 0: must be 1 to 4294967295"),
             (|l| l.drives_ms = 0, "limit drives_ms = 0: must be 1 to 4294967295"),
+            (|l| l.targets_ms = 0, "limit targets_ms = 0: must be 1 to 4294967295"),
+            (|l| l.angle_ms = 0, "limit angle_ms = 0: must be 1 to 4294967295"),
+            (|l| l.angle_beyond_mrad = 6301, "limit angle_beyond_mrad = 6301: must be 0 to 6300"),
+            (|l| l.angle_speed_mrad_s = 0, "limit angle_speed_mrad_s = 0: must be 1 to 4294967295"),
             (|l| l.impedance_ohm = (101, 100), "limit impedance_ohm = 101: must be 0 to 100"),
             (|l| l.supply_mv = (4301, 4300), "limit supply_mv = 4301: must be 0 to 4300"),
             (|l| l.path_um = (7, 6), "limit path_um = 7: must be -2147483648 to 6"),
@@ -311,7 +341,7 @@ mod tests {
 
     #[test]
     fn every_field_is_in_the_checksum() {
-        let changes: [fn(&mut Limits); 20] = [
+        let changes: [fn(&mut Limits); 24] = [
             |l| l.amplitude_ua ^= 1,
             |l| l.width_us ^= 1,
             |l| l.frequency_tenths_pps ^= 1,
@@ -324,6 +354,10 @@ mod tests {
             |l| l.readings_ms ^= 1,
             |l| l.rows_ms ^= 1,
             |l| l.drives_ms ^= 1,
+            |l| l.targets_ms ^= 1,
+            |l| l.angle_ms ^= 1,
+            |l| l.angle_beyond_mrad ^= 1,
+            |l| l.angle_speed_mrad_s ^= 1,
             |l| l.impedance_ohm.0 ^= 1,
             |l| l.impedance_ohm.1 ^= 1,
             |l| l.supply_mv.0 ^= 1,

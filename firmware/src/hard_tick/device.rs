@@ -1,14 +1,16 @@
-//! The hard tick: muscles, their stimulation, and supervision.
+//! The hard tick: muscles, the controller of their joint, their stimulation, and supervision.
 
 use crate::between::fault::Fault;
 use crate::between::guarded::{Guarded, Sum};
 use crate::between::limits::Limits;
 use crate::between::link_queues::{Order, Outcome, Stimuli, TickEnds};
 use crate::config::{CHANNELS, MUSCLES, TICK_US};
+use crate::hard_tick::angle_sensor::{AngleSensor, HostSensor};
+use crate::hard_tick::closed_loop::ClosedLoop;
 use crate::hard_tick::controller::Controller;
 use crate::hard_tick::deadline::Deadline;
 use crate::hard_tick::placed_muscle::Demand;
-use crate::hard_tick::safety::{NotArmed, Observed, Requested};
+use crate::hard_tick::safety::{AngleObserved, NotArmed, Observed, Requested};
 use crate::link::{Readings, Report, RowOutputs, Traced};
 
 /// Requests for current, with their age.
@@ -31,15 +33,18 @@ impl<T: Sum> Aged<T> {
 const NO_STIMULI: Stimuli = [None; CHANNELS];
 const NO_DEMAND: [Demand; MUSCLES] = [Demand::Nothing; MUSCLES];
 
-/// State of the hard tick.
-pub struct Device<'q> {
+/// State of the hard tick, with a sensor of the joint's angle.
+pub struct Device<'q, A = Option<HostSensor<'q>>> {
     controller: Controller<'q>,
     ends: TickEnds<'q>,
     deadline: Deadline,
+    sensor: A,
+    closed_loop: ClosedLoop,
     /// Drives: stimuli of channels without an electrode.
     drive: Aged<Stimuli>,
-    /// Stimuli of the last row, of channels with an electrode.
+    /// Stimuli of the last row or of the controller, of channels with an electrode.
     demand: Aged<[Demand; MUSCLES]>,
+    gain_is_valid: bool,
     readings: Readings,
     /// Age of the readings, µs.
     readings_age_us: u64,
@@ -55,14 +60,30 @@ pub struct Device<'q> {
 }
 
 impl<'q> Device<'q> {
-    /// Without muscles and readings.
-    pub fn new(controller: Controller<'q>, ends: TickEnds<'q>, deadline: Deadline) -> Self {
+    /// Without muscles and readings; angles come from the host.
+    pub fn new(controller: Controller<'q>, mut ends: TickEnds<'q>, deadline: Deadline) -> Self {
+        let sensor = ends.angles.take();
+        Self::with_sensor(controller, ends, deadline, sensor)
+    }
+}
+
+impl<'q, A: AngleSensor> Device<'q, A> {
+    /// The same with a sensor of the board. Angles of the host are then refused for want of room.
+    pub fn with_sensor(
+        controller: Controller<'q>,
+        ends: TickEnds<'q>,
+        deadline: Deadline,
+        sensor: A,
+    ) -> Self {
         Self {
             controller,
             ends,
             deadline,
+            sensor,
+            closed_loop: ClosedLoop::new(),
             drive: Aged::new(NO_STIMULI),
             demand: Aged::new(NO_DEMAND),
+            gain_is_valid: true,
             readings: Readings::default(),
             readings_age_us: 0,
             readings_are_new: false,
@@ -85,12 +106,14 @@ impl<'q> Device<'q> {
         for age_us in [&mut self.drive.age_us, &mut self.demand.age_us, &mut self.readings_age_us] {
             *age_us = age_us.saturating_add(TICK_US.into());
         }
+        self.closed_loop.age();
         self.obey();
         let mut memory_is_intact = true;
-        for placed in self.ends.muscles.iter_mut().flatten() {
+        for placed in self.ends.bank.muscles.iter_mut().flatten() {
             memory_is_intact &= placed.check();
         }
         self.advance();
+        let angle = self.control(&mut memory_is_intact);
         let limits = self.controller.limits().copied();
         if let Some(limits) = &limits
             && !self.was_armed
@@ -107,6 +130,7 @@ impl<'q> Device<'q> {
             // Too old: missing.
             path_um: self.readings.path_um.filter(|_| self.readings_age_us <= readings_us),
             path_is_new: core::mem::take(&mut self.readings_are_new),
+            angle,
             in_time: self.in_time,
             memory_is_intact,
             // The controller latches it.
@@ -125,6 +149,7 @@ impl<'q> Device<'q> {
         if self.demand.age_us > u64::from(limits.rows_ms) * 1000 {
             self.demand = Aged::new(NO_DEMAND);
         }
+        self.closed_loop.expire(u64::from(limits.targets_ms) * 1000);
     }
 
     /// Discards requests if it was armed and is no longer.
@@ -138,7 +163,12 @@ impl<'q> Device<'q> {
     fn requested(&self) -> Option<Requested> {
         let drive = self.drive.value.get()?;
         let demands = self.demand.value.get()?;
-        let mut requested = Requested { stimuli: *drive, ..Requested::NOTHING };
+        let mut requested = Requested {
+            stimuli: *drive,
+            target_age_us: self.closed_loop.target_age_us(),
+            gain_is_valid: self.gain_is_valid,
+            ..Requested::NOTHING
+        };
         if drive.iter().flatten().any(|stimulus| stimulus.amplitude_ua > 0) {
             requested.drive_age_us = self.drive.age_us;
         }
@@ -170,6 +200,8 @@ impl<'q> Device<'q> {
     fn forget_requests(&mut self) {
         self.drive = Aged::new(NO_STIMULI);
         self.demand = Aged::new(NO_DEMAND);
+        self.closed_loop.forget();
+        self.gain_is_valid = true;
     }
 
     /// The tick ends, `since_due` counts of its timer after it was due, or after the next tick was
@@ -200,25 +232,44 @@ impl<'q> Device<'q> {
         match order {
             Order::Load(place, bank) => {
                 if let (Some(muscle), Some(&loaded)) =
-                    (self.ends.muscles.get_mut(place), bank.get(place))
+                    (self.ends.bank.muscles.get_mut(place), bank.muscles.get(place))
                 {
                     *muscle = loaded;
                 }
+                // A controller of the muscle before is none of this one.
+                self.ends.bank.controller = bank.controller;
                 // Electrodes may have changed channels.
                 self.forget_requests();
                 Outcome::Took(bank)
             }
+            Order::Control(bank) => {
+                self.ends.bank.controller = bank.controller;
+                self.forget();
+                Outcome::Took(bank)
+            }
             Order::Rest(bank) => {
-                let before = core::mem::replace(&mut self.ends.muscles, bank);
+                let before = core::mem::replace(&mut self.ends.bank, bank);
                 self.rows = 0;
                 // Waiting rows belong to the time before.
                 while self.ends.rows.dequeue().is_some() {}
                 self.demand = Aged::new(NO_DEMAND);
+                self.closed_loop.forget();
                 Outcome::Took(before)
             }
             Order::Drive(stimuli) => {
                 self.drive = Aged::of(stimuli);
                 Outcome::Done
+            }
+            Order::Target(target) => {
+                self.closed_loop.aim(target);
+                Outcome::Done
+            }
+            Order::Step(target, reading) => {
+                // Armed, the tick steps it.
+                let placed = self.ends.bank.controller.as_mut().filter(|_| !self.was_armed);
+                let stepped =
+                    placed.and_then(|placed| self.closed_loop.step(placed, &target, &reading));
+                stepped.map_or(Outcome::Empty, |stepped| Outcome::Stepped(stepped.command))
             }
             Order::Readings(readings) => {
                 self.readings = readings;
@@ -244,11 +295,33 @@ impl<'q> Device<'q> {
                 // The link reports it.
                 frames: Default::default(),
             }),
-            Order::Words(place) => match self.ends.muscles.get(place) {
+            Order::Words(place) => match self.ends.bank.muscles.get(place) {
                 Some(Some(placed)) => Outcome::Words(placed.words()),
                 _ => Outcome::Empty,
             },
         }
+    }
+
+    /// Reads the joint's sensor and, while armed, steps the controller, if there is one. What
+    /// supervision has to know of the sensor.
+    fn control(&mut self, is_intact: &mut bool) -> Option<AngleObserved> {
+        let read = self.sensor.read();
+        let placed = self.ends.bank.controller.as_mut()?;
+        *is_intact &= placed.check();
+        let (range_urad, period_us) = placed.sensor();
+        let reading = read.as_ref().and_then(|read| read.get().copied());
+        *is_intact &= read.is_some() == reading.is_some();
+        if let Some(reading) = reading {
+            self.closed_loop.take(reading, period_us);
+        }
+        *is_intact &= self.closed_loop.is_intact();
+        if self.was_armed
+            && let Some(stepped) = self.closed_loop.follow(placed)
+        {
+            self.demand = Aged::new(stepped.demands);
+            self.gain_is_valid = stepped.gain_is_valid;
+        }
+        Some(AngleObserved { reading, range_urad, period_us })
     }
 
     /// Steps the muscles by the next row, if there is one and room for its outputs. A row whose
@@ -262,7 +335,8 @@ impl<'q> Device<'q> {
         let mut demands = NO_DEMAND;
         self.row_lost = row.get().is_none();
         let inputs = row.get().into_iter().flatten();
-        let places = self.ends.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
+        let places =
+            self.ends.bank.muscles.iter_mut().zip(inputs).zip(&mut outputs).zip(&mut demands);
         for (((muscle, inputs), output), demand) in places {
             let Some(placed) = muscle else { continue };
             *output = placed.step(inputs);

@@ -10,6 +10,9 @@ use crate::between::guarded::Guarded;
 use crate::between::limits::{LimitError, Limits};
 use crate::between::stimulus::{Scale, Stimulus};
 pub use crate::config::CHANNELS;
+pub use crate::hard_tick::angle_watch::AngleObserved;
+use crate::hard_tick::angle_watch::AngleWatch;
+use crate::hard_tick::dose::{charge_nc, mean_square};
 use serde::{Deserialize, Serialize};
 
 /// Observations of a tick.
@@ -25,6 +28,8 @@ pub struct Observed {
     pub path_um: Option<i32>,
     /// It is a new reading, even if its value is unchanged.
     pub path_is_new: bool,
+    /// The joint's sensor, if a controller is loaded.
+    pub angle: Option<AngleObserved>,
     /// The last tick began and finished in time.
     pub in_time: bool,
     /// Checksums of state and parameters are valid.
@@ -42,14 +47,24 @@ pub struct Requested {
     pub row_age_us: u64,
     /// Age of the drive in force, µs; 0 without one.
     pub drive_age_us: u64,
-    /// Activation and frequency of the rows are finite.
+    /// Age of the target that the controller follows, µs; 0 without one.
+    pub target_age_us: u64,
+    /// Activation and frequency of the rows, or the controller's commands, are finite.
     pub is_finite: bool,
+    /// The controller's estimate of the gain is in its range.
+    pub gain_is_valid: bool,
 }
 
 impl Requested {
     /// No stimulus on any channel.
-    pub const NOTHING: Self =
-        Self { stimuli: [None; CHANNELS], row_age_us: 0, drive_age_us: 0, is_finite: true };
+    pub const NOTHING: Self = Self {
+        stimuli: [None; CHANNELS],
+        row_age_us: 0,
+        drive_age_us: 0,
+        target_age_us: 0,
+        is_finite: true,
+        gain_is_valid: true,
+    };
 
     /// Longest period of the pulse trains with current, µs; 0 without one.
     fn longest_period_us(&self) -> u32 {
@@ -113,6 +128,7 @@ pub struct Supervisor {
     path_before: Option<i32>,
     /// Time since the last reading.
     path_age_us: u64,
+    angle: AngleWatch,
 }
 
 impl Supervisor {
@@ -137,6 +153,7 @@ impl Supervisor {
             stuck_us: 0,
             path_before: None,
             path_age_us: 0,
+            angle: AngleWatch::default(),
         })
     }
 
@@ -255,6 +272,7 @@ impl Supervisor {
     ) -> Option<Fault> {
         count(&mut self.silence_us, !observed.host_heard, self.tick_us);
         let sensor = self.wrong_sensor(limits, observed, stimulates);
+        let angle = self.angle.wrong(limits, self.tick_us, observed.angle.as_ref(), stimulates);
         let faults = [
             (!observed.memory_is_intact).then_some(Fault::Checksum),
             (!observed.output_answers).then_some(Fault::Output),
@@ -262,6 +280,7 @@ impl Supervisor {
             outside(observed.supply_mv, limits.supply_mv).map(|_| Fault::Supply),
             wrong_electrode(observed, &requested.stimuli, limits.impedance_ohm),
             sensor,
+            angle,
             (self.silence_us > micros(limits.silence_ms)).then_some(Fault::Silence),
         ];
         faults.into_iter().flatten().next()
@@ -310,6 +329,12 @@ impl Supervisor {
         }
         if requested.drive_age_us > micros(limits.drives_ms) {
             return Some(Fault::StaleDrive);
+        }
+        if requested.target_age_us > micros(limits.targets_ms) {
+            return Some(Fault::StaleTarget);
+        }
+        if !requested.gain_is_valid {
+            return Some(Fault::Gain);
         }
         if !requested.is_finite {
             return Some(Fault::Request);
@@ -365,22 +390,6 @@ fn wrong_electrode(
         let above = outside((*impedance)?, range)?;
         Some(if above { Fault::ElectrodeOpen } else { Fault::ElectrodeShort })
     })
-}
-
-/// Charge of a phase, nC, rounded up, from µA times µs in pC.
-fn charge_nc(stimulus: &Stimulus) -> u64 {
-    (u64::from(stimulus.amplitude_ua) * u64::from(stimulus.width_us)).div_ceil(1000)
-}
-
-/// Mean square of a channel's current, µA²: A² w (1 + 1/k) f, with a recharge phase that is k times
-/// weaker and longer. Saturates; amplitudes count up to 1 A, above every limit.
-fn mean_square(stimulus: &Stimulus) -> u64 {
-    let amplitude = u64::from(stimulus.amplitude_ua.min(1_000_000));
-    let recovery = u64::from(stimulus.recovery.max(1));
-    let on_us = u64::from(stimulus.width_us) * (recovery + 1);
-    let frequency = u64::from(stimulus.frequency_tenths_pps);
-    // 10^12 times 2^24 fits; 10^7 is µs in a second, and tenths of a pulse.
-    (amplitude * amplitude * on_us / 10_000).saturating_mul(frequency) / recovery / 1_000
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use heapless::Vec;
 use serde::Serialize;
 
 /// Version of the frame format and its messages; others are refused.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 /// Longest message, bytes.
 pub const MOST_CONTENT: usize = 1024;
 /// Version, and sequence number in little endian.

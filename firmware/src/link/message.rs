@@ -1,15 +1,18 @@
 //! Messages between host and device. Appending to an enumeration keeps the version; any other
 //! change raises it.
 
+use super::control::{Commanded, ControlUpload};
 use super::error::{Counters, LinkError};
 use super::frame::SessionNumber;
 use crate::between::fault::Fault;
+use crate::between::motion::{AngleReading, Target};
 use crate::between::stimulus::{Stimulus, StimulusError};
 use crate::config::{CHANNELS, MUSCLES, TYPES};
 use crate::hard_tick::safety::{NotArmed, State};
 use crate::link::storage::NotStored;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
+use vm_nostd::control::JointError;
 use vm_nostd::{Limit, MuscleParams, ParameterError, RecruitmentCurveParams};
 
 /// Most rows in a message.
@@ -67,6 +70,24 @@ pub enum Request {
     State {
         /// 0 to [`MUSCLES`] - 1.
         place: u8,
+    },
+    /// A controller of the joint that both muscles move, or none: validated, stored, and at rest.
+    /// Uploading a muscle later removes it. With a controller rows are refused. Refused while armed.
+    Control(Option<ControlUpload>),
+    /// What the controller is to do, for [`Limits::targets_ms`](crate::Limits::targets_ms) at most.
+    /// It steps every tick while armed, and begins anew with the first target after arming. Refused
+    /// beyond the joint's limits.
+    Target(Target),
+    /// A reading of the joint's angle, for [`Limits::angle_ms`](crate::Limits::angle_ms) at most.
+    /// Answered at once, without a tick between.
+    Angle(AngleReading),
+    /// Steps the controller once by a target and a reading, without a prediction: to compare its
+    /// bits. Nothing is stimulated; refused while armed. Answer: [`Answer::Stepped`].
+    Step {
+        /// The target.
+        target: Target,
+        /// The reading.
+        reading: AngleReading,
     },
 }
 
@@ -160,13 +181,17 @@ pub enum Answer<'a> {
     Report(Report),
     /// Words of a muscle's state.
     State(Vec<u32, MOST_WORDS>),
+    /// Answer to [`Request::Step`].
+    Stepped(Commanded),
 }
 
 /// Why a request was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Refusal<'a> {
-    /// A parameter of a muscle or recruitment curve is out of range.
+    /// A parameter of a muscle, recruitment curve, controller or target is out of range.
     Parameter {
+        /// Place of the muscle, if a controller's muscle is refused.
+        muscle: Option<u8>,
         /// See [`ParameterError::field`].
         field: &'a str,
         /// See [`ParameterError::fiber`].
@@ -208,13 +233,32 @@ pub enum Refusal<'a> {
         /// Place of that muscle.
         place: u8,
     },
+    /// A controller needs two muscles in FES with electrodes; that of this place is not so.
+    NotControllable {
+        /// 0 or 1.
+        place: u8,
+    },
+    /// There is no controller.
+    NoController,
+    /// The controller has the electrodes: no rows.
+    Controlled,
 }
 
 impl From<ParameterError> for Refusal<'static> {
     fn from(error: ParameterError) -> Self {
         let ParameterError { field, fiber, value, limit } = error;
         // There are few types.
-        Self::Parameter { field, fiber: fiber.map(|index| index as u8), value, limit }
+        let fiber = fiber.map(|index| index as u8);
+        Self::Parameter { muscle: None, field, fiber, value, limit }
+    }
+}
+
+impl From<JointError> for Refusal<'static> {
+    fn from(error: JointError) -> Self {
+        let ParameterError { field, fiber, value, limit } = error.error;
+        // There are few muscles and types.
+        let [muscle, fiber] = [error.muscle, fiber].map(|index| index.map(|index| index as u8));
+        Self::Parameter { muscle, field, fiber, value, limit }
     }
 }
 
@@ -240,6 +284,8 @@ pub struct Info {
     pub tick_us: u32,
     /// Muscles restored at boot.
     pub restored: u8,
+    /// A controller is loaded.
+    pub controlled: bool,
 }
 
 /// Status of a device.

@@ -2,6 +2,7 @@
 
 use crate::between::guarded::Guarded;
 use crate::between::link_queues::{Bank, LinkEnds, Order, Outcome, Row, Stimuli};
+use crate::between::motion::{AngleReading, Target};
 use crate::between::permission::Permission;
 use crate::between::stimulus::within;
 use crate::config::{CHANNELS, MUSCLES, TYPES};
@@ -9,8 +10,8 @@ use crate::link::randomness::Randomness;
 use crate::link::storage::SlotBuffer;
 use crate::link::uploads::{Stored, Uploads};
 use crate::link::{
-    Answer, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal, Request, Session,
-    SessionNumber, Upload, encode,
+    Answer, ControlUpload, Info, LinkError, MOST_FRAME, Message, NO_SESSION, Receiver, Refusal,
+    Request, Session, SessionNumber, Upload, encode,
 };
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use heapless::{Deque, Vec};
@@ -51,8 +52,8 @@ impl ServerRoom {
         Self {
             receiver: Receiver::new(),
             stored: [0; _],
-            uploads: [None; MUSCLES],
-            built: [const { None }; MUSCLES],
+            uploads: Stored::NOTHING,
+            built: Bank::new(),
             out: Deque::new(),
         }
     }
@@ -212,6 +213,16 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
                 check_place(place)?;
                 Order::Words(place.into())
             }
+            Request::Control(control) => self.control(control)?,
+            Request::Target(target) => {
+                self.uploads.check_target(&target)?;
+                Order::Target(Guarded::new(target))
+            }
+            Request::Angle(reading) => {
+                self.angle(reading)?;
+                return Ok(Some(Answer::Done));
+            }
+            Request::Step { target, reading } => self.step_once(target, reading)?,
         };
         self.give(order);
         self.waiting = Waiting::Request(sequence);
@@ -220,7 +231,9 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
 
     /// Gives an order; there is room, since the last outcome was taken.
     fn give(&mut self, order: Order) {
-        if let Err(Order::Load(_, bank) | Order::Rest(bank)) = self.ends.orders.enqueue(order) {
+        if let Err(Order::Load(_, bank) | Order::Control(bank) | Order::Rest(bank)) =
+            self.ends.orders.enqueue(order)
+        {
             self.ends.spare = Some(bank);
         }
     }
@@ -234,6 +247,33 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
         let index = usize::from(place);
         self.uploads.take(index, upload)?;
         Ok(Order::Load(index, self.spare()?))
+    }
+
+    #[inline(never)]
+    fn control(&mut self, control: Option<ControlUpload>) -> Result<Order, Refusal<'static>> {
+        self.only_disarmed()?;
+        self.only_with_spare()?;
+        self.uploads.take_control(control)?;
+        Ok(Order::Control(self.spare()?))
+    }
+
+    /// A reading for the tick, if it takes them.
+    fn angle(&mut self, reading: AngleReading) -> Result<(), Refusal<'static>> {
+        if !self.uploads.is_controlled() {
+            return Err(Refusal::NoController);
+        }
+        let given = self.ends.angles.enqueue(Guarded::new(reading));
+        given.map_err(|_| Refusal::NoRoom { room: 0 })
+    }
+
+    fn step_once(
+        &mut self,
+        target: Target,
+        reading: AngleReading,
+    ) -> Result<Order, Refusal<'static>> {
+        self.only_disarmed()?;
+        self.uploads.check_target(&target)?;
+        Ok(Order::Step(target, reading))
     }
 
     /// The spare bank, filled with all muscles at rest.
@@ -262,7 +302,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     fn rest(&mut self, paths: &[Option<f32>; MUSCLES]) -> Result<Order, Refusal<'static>> {
         self.only_disarmed()?;
         let bank = self.spare()?;
-        for (driven, path) in bank.iter_mut().zip(paths) {
+        for (driven, path) in bank.muscles.iter_mut().zip(paths) {
             if let (Some(driven), Some(path)) = (driven, path)
                 && let Err(refusal) = driven.rest(*path)
             {
@@ -275,6 +315,9 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
     }
 
     fn rows(&mut self, first: u32, rows: &[Row]) -> Result<(), Refusal<'static>> {
+        if self.uploads.is_controlled() {
+            return Err(Refusal::Controlled);
+        }
         within("first", first, self.row, self.row)?;
         let room = self.ends.rows.room();
         if room < rows.len() {
@@ -302,6 +345,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
             // A tick is at most 2 ms.
             tick_us: (self.step.seconds() * 1e6 + 0.5) as u32,
             restored: self.uploads.restored(),
+            controlled: self.uploads.is_controlled(),
         }
     }
 
@@ -318,6 +362,7 @@ impl<'q, F: MultiwriteNorFlash, R: Randomness> Server<'q, F, R> {
                 Answer::Report(report)
             }
             Outcome::Words(words) => Answer::State(words),
+            Outcome::Stepped(command) => Answer::Stepped(command),
             Outcome::Empty => Answer::Refused(Refusal::Empty),
         }
     }

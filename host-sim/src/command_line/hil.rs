@@ -37,7 +37,7 @@ pub struct HilArgs {
     #[arg(long)]
     port: Option<String>,
     /// Baud rate of that port.
-    #[arg(long, default_value_t = 115_200, requires = "port")]
+    #[arg(long, default_value_t = 460_800, requires = "port")]
     baud: u32,
 }
 

@@ -84,6 +84,9 @@ pub enum HilError {
         /// Its limit.
         limit: String,
     },
+    /// The host's own controller was refused.
+    #[error(transparent)]
+    Joint(#[from] vm_nostd::control::JointError),
     /// The host's own run failed.
     #[error(transparent)]
     Run(#[from] crate::engine::RunError),
@@ -315,6 +318,7 @@ fn owned(answer: Answer<'_>) -> Result<Answer<'static>, (String, bool)> {
         Answer::Info(info) => Answer::Info(info),
         Answer::Report(report) => Answer::Report(report),
         Answer::State(words) => Answer::State(words),
+        Answer::Stepped(command) => Answer::Stepped(command),
         Answer::Refused(refusal) => {
             return Err((reason(&refusal), matches!(refusal, Refusal::NoRoom { .. })));
         }
@@ -323,9 +327,10 @@ fn owned(answer: Answer<'_>) -> Result<Answer<'static>, (String, bool)> {
 
 fn reason(refusal: &Refusal<'_>) -> String {
     match refusal {
-        Refusal::Parameter { field, fiber, value, limit } => {
+        Refusal::Parameter { muscle, field, fiber, value, limit } => {
+            let muscle = muscle.map_or_else(String::new, |index| format!("muscles[{index}]."));
             let fiber = fiber.map_or_else(String::new, |index| format!("fibers[{index}]."));
-            format!("{fiber}{field} = {value}: {limit}")
+            format!("{muscle}{fiber}{field} = {value}: {limit}")
         }
         Refusal::Number { field, value, least, most } => {
             format!("{field} = {value}: must be {least} to {most}")
@@ -351,6 +356,11 @@ fn reason(refusal: &Refusal<'_>) -> String {
         Refusal::ChannelTaken { channel, place } => {
             format!("channel {channel} belongs to the electrode of muscle {place}")
         }
+        Refusal::NotControllable { place } => {
+            format!("a controller needs a muscle in FES with an electrode in slot {place}")
+        }
+        Refusal::NoController => "no controller".to_owned(),
+        Refusal::Controlled => "the controller has the electrodes".to_owned(),
     }
 }
 
@@ -368,5 +378,9 @@ fn name(request: &Request) -> &'static str {
         Request::Stop => "stop",
         Request::Report => "report",
         Request::State { .. } => "state",
+        Request::Control(_) => "the upload of a controller",
+        Request::Target(_) => "target",
+        Request::Angle(_) => "angle",
+        Request::Step { .. } => "step",
     }
 }

@@ -134,6 +134,7 @@ impl Bench {
             // With the noise that a sensor has.
             path_um: Some(160_000 + (self.tick % 3) as i32),
             path_is_new: true,
+            angle: None,
             in_time: true,
             memory_is_intact: true,
             output_answers: true,

@@ -154,6 +154,7 @@ fn owned(answer: Answer<'_>) -> Result<Answer<'static>, ClientError> {
         Answer::Info(info) => Answer::Info(info),
         Answer::Report(report) => Answer::Report(report),
         Answer::State(words) => Answer::State(words),
+        Answer::Stepped(command) => Answer::Stepped(command),
         Answer::Refused(refusal) => {
             let no_room = matches!(refusal, Refusal::NoRoom { .. });
             return Err(ClientError::Refused { reason: reason(&refusal), no_room });
@@ -164,9 +165,10 @@ fn owned(answer: Answer<'_>) -> Result<Answer<'static>, ClientError> {
 /// Field, value and limit of a number; otherwise the name.
 fn reason(refusal: &Refusal<'_>) -> String {
     match refusal {
-        Refusal::Parameter { field, fiber, value, limit } => {
+        Refusal::Parameter { muscle, field, fiber, value, limit } => {
+            let muscle = muscle.map_or_else(String::new, |index| format!("muscles[{index}]."));
             let fiber = fiber.map_or_else(String::new, |index| format!("fibers[{index}]."));
-            format!("{fiber}{field} = {value}: {limit}")
+            format!("{muscle}{fiber}{field} = {value}: {limit}")
         }
         Refusal::Number { field, value, least, most } => {
             format!("{field} = {value}: must be {least} to {most}")

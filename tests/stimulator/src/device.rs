@@ -1,6 +1,6 @@
 //! The whole firmware but its chip, in this process: a line for the host's end of the link.
 
-use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
+use crate::electrodes::{CHANNELS, Converter, Pin, SCALE, Shared, stage};
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use firmware::safety::Fault;
 use firmware::{
@@ -45,6 +45,8 @@ pub struct InProcess<F> {
     step_us: u32,
     /// The most counts at the electrodes since it was asked for.
     flowed: u16,
+    /// Channels that carried it.
+    carried: [bool; CHANNELS],
 }
 
 impl<F: MultiwriteNorFlash> InProcess<F> {
@@ -87,6 +89,7 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
             timer: 0,
             step_us: Pulses::<Converter, Pin>::FIRST_US,
             flowed: 0,
+            carried: [false; CHANNELS],
         }
     }
 
@@ -137,6 +140,9 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
         assert!(electrodes.problems.is_empty(), "{:?}", electrodes.problems);
         if electrodes.cathodic || electrodes.anodic {
             self.flowed = self.flowed.max(electrodes.counts);
+            for (carried, connected) in self.carried.iter_mut().zip(electrodes.channels) {
+                *carried |= connected && electrodes.counts > 0;
+            }
         }
     }
 
@@ -153,6 +159,11 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
     /// The most counts that have flowed since this was asked last.
     pub fn flowed(&mut self) -> u16 {
         std::mem::take(&mut self.flowed)
+    }
+
+    /// The channels that current has flowed through since this was asked last.
+    pub fn carried(&mut self) -> [bool; CHANNELS] {
+        std::mem::take(&mut self.carried)
     }
 
     /// The line loses a byte.

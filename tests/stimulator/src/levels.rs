@@ -324,6 +324,7 @@ impl Levels {
                     Answer::Done => Answer::Done,
                     Answer::Report(report) => Answer::Report(report),
                     Answer::State(words) => Answer::State(words),
+                    Answer::Stepped(command) => Answer::Stepped(command),
                     Answer::Info(info) => {
                         let Info { session, .. } = info;
                         self.session.set(session);

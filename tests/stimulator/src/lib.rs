@@ -7,6 +7,7 @@ pub mod device;
 pub mod electrodes;
 pub mod explorer;
 pub mod host;
+pub mod joint;
 pub mod levels;
 pub mod patient;
 pub mod world;

@@ -34,10 +34,12 @@ pub struct Bounds {
     pub silence_us: u64,
     /// Of the reading of the path.
     pub readings_us: u64,
-    /// Of a row.
+    /// Of a row, or of a target.
     pub rows_us: u64,
     /// Of a drive.
     pub drives_us: u64,
+    /// Of an angle.
+    pub angle_us: u64,
     /// A tick.
     pub tick_us: u64,
 }
@@ -70,13 +72,15 @@ pub struct Patient {
     armed: bool,
     /// What ended it last.
     ended_by: &'static str,
-    /// The row's channel, if a muscle has an electrode.
-    row_channel: usize,
+    /// Channels of what rows or a controller's targets ask for.
+    row_channels: &'static [usize],
     /// Times of the last frame, drive, row and reading.
     heard_us: u64,
     drive_us: u64,
     row_us: u64,
     reading_us: u64,
+    /// Of the last angle, if a controller needs them.
+    angle_us: Option<u64>,
     session: Session,
     /// Pulses so far.
     pub pulses: u64,
@@ -84,7 +88,7 @@ pub struct Patient {
 
 impl Patient {
     /// Before anything.
-    pub fn new(bounds: Bounds, row_channel: usize) -> Self {
+    pub fn new(bounds: Bounds, row_channels: &'static [usize]) -> Self {
         Self {
             bounds,
             channels: Default::default(),
@@ -94,11 +98,12 @@ impl Patient {
             discharges: None,
             armed: false,
             ended_by: "boot",
-            row_channel,
+            row_channels,
             heard_us: 0,
             drive_us: 0,
             row_us: 0,
             reading_us: 0,
+            angle_us: None,
             session: Session::default(),
             pulses: 0,
         }
@@ -170,7 +175,7 @@ impl Patient {
         if in_a_second > bounds.pulses + 1 {
             return Err(format!("{in_a_second} pulses in a second"));
         }
-        let oldest_us = if channel == self.row_channel {
+        let oldest_us = if self.is_of_rows(channel) {
             self.row_us + bounds.rows_us
         } else {
             self.drive_us + bounds.drives_us
@@ -192,7 +197,7 @@ impl Patient {
     fn longest_asked_us(&self, now_us: u64) -> Option<u64> {
         let rows = now_us <= self.row_us + self.bounds.rows_us;
         let drives = now_us <= self.drive_us + self.bounds.drives_us;
-        let young = |channel| if channel == self.row_channel { rows } else { drives };
+        let young = |channel| if self.is_of_rows(channel) { rows } else { drives };
         let channels = self.channels.iter().enumerate().filter(|(index, _)| young(*index));
         let asked = channels.filter_map(|(_, channel)| channel.asked.back());
         let trains = asked.filter(|asked| asked.asks_at(now_us));
@@ -275,6 +280,9 @@ impl Patient {
         if now_us > self.reading_us + bounds.readings_us + 2 * tick_us {
             self.ends("old readings");
         }
+        if self.angle_us.is_some_and(|us| now_us > us + bounds.angle_us + 2 * tick_us) {
+            self.ends("old angles");
+        }
     }
 
     /// A frame was acted upon.
@@ -287,11 +295,20 @@ impl Patient {
         self.reading_us = now_us;
     }
 
+    /// An angle with which nothing is wrong; from then on they have to come.
+    pub fn reads_angle(&mut self, now_us: u64) {
+        self.angle_us = Some(now_us);
+    }
+
+    fn is_of_rows(&self, channel: usize) -> bool {
+        self.row_channels.contains(&channel)
+    }
+
     /// A drive was done in the tick that begins now.
     pub fn drives(&mut self, now_us: u64, stimuli: &[Option<Stimulus>; CHANNELS]) {
         self.drive_us = now_us;
         for (channel, stimulus) in stimuli.iter().enumerate() {
-            if channel != self.row_channel {
+            if !self.is_of_rows(channel) {
                 self.asks(now_us, channel, *stimulus);
             }
         }
@@ -301,7 +318,9 @@ impl Patient {
     /// A row had its tick.
     pub fn steps(&mut self, now_us: u64, stimulus: Option<Stimulus>) {
         self.row_us = now_us;
-        self.asks(now_us, self.row_channel, stimulus);
+        for &channel in self.row_channels {
+            self.asks(now_us, channel, stimulus);
+        }
         self.session.goes_on &= self.longest_asked_us(now_us).is_some();
     }
 
@@ -366,7 +385,7 @@ impl Patient {
     /// Whether a drive asks for current.
     pub fn is_driven(&self) -> bool {
         let driven = |(index, channel): (usize, &Channel)| {
-            index != self.row_channel
+            !self.is_of_rows(index)
                 && channel.asked.back().is_some_and(|last| last.asks_at(self.now_us))
         };
         self.armed && self.channels.iter().enumerate().any(driven)

@@ -1,13 +1,15 @@
 //! A device, a patient and a host that knows what it has said: every answer and every trace is held
 //! against the limits.
 
+mod controlled;
+
 use crate::device::{LIMITS as BOARD, Memory, Numbers};
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use crate::host;
 use crate::patient::{Bounds, Patient};
 use firmware::link::{
-    Answer, Electrode, Message, Mode, NO_SESSION, Receiver, Request, RowInputs, SessionNumber,
-    Upload, encode,
+    AngleReading, Answer, Electrode, Message, Mode, NO_SESSION, Receiver, Request, RowInputs,
+    SessionNumber, Upload, encode,
 };
 use firmware::safety::{Fault, State};
 use firmware::{
@@ -33,6 +35,7 @@ const LIMITS: Limits = Limits {
     readings_ms: 200,
     rows_ms: 50,
     drives_ms: 400,
+    targets_ms: 50,
     stuck_ms: 500,
     ..BOARD
 };
@@ -51,6 +54,7 @@ const BOUNDS: Bounds = Bounds {
     readings_us: 200_000,
     rows_us: 50_000,
     drives_us: 400_000,
+    angle_us: 30_000,
     tick_us: TICK,
 };
 
@@ -105,6 +109,15 @@ pub struct World {
     pub path_um: i32,
     /// When that was read.
     path_read_us: u64,
+    /// The newest angle since the last tick, and the last one that a tick took, with its time.
+    angle: Option<AngleReading>,
+    read: Option<(AngleReading, u64)>,
+    /// A controller is loaded.
+    pub is_controlled: bool,
+    /// The joint's angle, µrad, and when it is read next: the host's own.
+    pub angle_urad: i32,
+    /// See `angle_urad`.
+    pub next_angle_us: u64,
     /// How often each fault was read.
     pub seen: HashMap<Fault, u64>,
 }
@@ -112,6 +125,14 @@ pub struct World {
 impl World {
     /// Greeted, with a muscle whose electrode rows stimulate.
     pub fn boot() -> Self {
+        let mut world = Self::greeted(&[OF_ROWS]);
+        let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
+        world.ask(Request::Upload { place: 0, upload });
+        world.ask(Request::Rest([Some(0.16), None]));
+        world
+    }
+
+    fn greeted(row_channels: &'static [usize]) -> Self {
         let (stage, electrodes) = stage();
         let plans: &'static mut PlanQueue = Box::leak(Box::default());
         let permission: &'static Permission = Box::leak(Box::default());
@@ -133,7 +154,7 @@ impl World {
             device: Device::new(controller, tick_ends, deadline),
             pulses: Pulses::new(stage, take, permission, TICK as u32),
             electrodes,
-            patient: Patient::new(BOUNDS, OF_ROWS),
+            patient: Patient::new(BOUNDS, row_channels),
             now_us: 0,
             timer_us: 250,
             step_us: Pulses::<Converter, Pin>::FIRST_US,
@@ -149,13 +170,15 @@ impl World {
             late: false,
             path_um: 200_000,
             path_read_us: 0,
+            angle: None,
+            read: None,
+            is_controlled: false,
+            angle_urad: 1_000_000,
+            next_angle_us: 0,
             seen: HashMap::new(),
         };
         world.tick();
         world.ask(Request::Hello { nonce: 1 });
-        let upload = Upload { mode: Mode::Fes, muscle: MUSCLE, electrode: Some(ELECTRODE) };
-        world.ask(Request::Upload { place: 0, upload });
-        world.ask(Request::Rest([Some(0.16), None]));
         world
     }
 
@@ -189,6 +212,7 @@ impl World {
             self.electrodes.borrow_mut().words = 0;
             self.pulses.attend();
         }
+        self.take_angle();
         self.patient.ticked(tick_us);
         self.server.poll();
         self.hear();
@@ -277,6 +301,8 @@ impl World {
                 self.patient.forgets(now_us);
             }
             Some(Request::Arm) => self.patient.arms(),
+            Some(Request::Target(_)) => self.patient.steps(now_us, Some(controlled::AT_MOST)),
+            Some(Request::Angle(reading)) => self.angle = Some(reading),
             Some(Request::Rest(_)) => {
                 self.rows.clear();
                 self.patient.steps(now_us, None);

@@ -2,7 +2,10 @@
 //! flow, what is latched, and what it takes to arm again.
 
 use firmware::Stimulus;
-use firmware::safety::{CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor};
+use firmware::link::AngleReading;
+use firmware::safety::{
+    AngleObserved, CHANNELS, Fault, NotArmed, Observed, Requested, State, Supervisor,
+};
 use std::collections::HashSet;
 use std::path::Path;
 use stimulator_tests::bench::{Bench, LIMITS, stimulus};
@@ -50,6 +53,16 @@ fn cases() -> Vec<Case> {
             Some(160_000 + if t.is_multiple_of(2) { 1010 } else { 0 })),
         case!(SensorStuck, "the path stays at 160.001 mm", 2_002, |o, _, _| o.path_um =
             Some(160_001)),
+        case!(SensorMissing, "no angle of the joint", 32, |o, _, t| o.angle = read_once(t)),
+        case!(SensorRange, "slowly 176 mrad beyond the joint", 60, |o, _, t| {
+            o.angle = reading(t, (1_000_000 + 20_000 * t as i32).min(2_176_000));
+        }),
+        case!(SensorJump, "angles jump by 51 mrad", 2, |o, _, t| o.angle =
+            reading(t, 1_000_000 + if t.is_multiple_of(2) { 51_000 } else { 0 })),
+        case!(SensorStuck, "the angle stays", 2_002, |o, _, t| o.angle = reading(t, 1_000_000)),
+        case!(SensorTime, "stamps gain 31 ms", 2, |o, _, t| {
+            o.angle = reading(32 * t, 1_000_000 + (t % 3) as i32);
+        }),
         case!(Deadline, "a late tick", 1, |o, _, _| o.in_time = false),
         case!(Watchdog, "a restart by the watchdog", 1, |_, _, _| ()),
         case!(Checksum, "a flipped bit in the state", 1, |o, _, _| o.memory_is_intact = false),
@@ -61,7 +74,25 @@ fn cases() -> Vec<Case> {
         case!(StaleRow, "rows stop coming", 52, |_, r, t| r.row_age_us = u64::from(1000 * t)),
         case!(StaleDrive, "the host does not repeat its drive", 1_002, |_, r, t| r.drive_age_us =
             u64::from(1000 * t)),
+        case!(StaleTarget, "targets stop", 102, |_, r, t| r.target_age_us = u64::from(1000 * t)),
+        case!(Gain, "a gain out of range", 1, |_, r, _| r.gain_is_valid = false),
     ]
+}
+
+/// A joint of -1 to 2 rad whose angle is read in every tick.
+fn reading(tick: u32, angle_urad: i32) -> Option<AngleObserved> {
+    let reading = AngleReading { time_us: 1000 * tick, angle_urad };
+    Some(AngleObserved {
+        reading: Some(reading),
+        range_urad: (-1_000_000, 2_000_000),
+        period_us: 1_000,
+    })
+}
+
+/// The same, read once and not again.
+fn read_once(tick: u32) -> Option<AngleObserved> {
+    let observed = reading(tick, 1_000_000)?;
+    Some(AngleObserved { reading: observed.reading.filter(|_| tick == 0), ..observed })
 }
 
 /// Over once they are latched.
@@ -129,7 +160,7 @@ fn every_fault_ends_in_neutral_and_is_in_the_table() {
     let cases = cases();
     let tested: HashSet<Fault> = cases.iter().map(|case| case.fault).collect();
     // All but the one that everything starts with.
-    assert_eq!((tested.len(), tested.contains(&Fault::Boot)), (22, false));
+    assert_eq!((tested.len(), tested.contains(&Fault::Boot)), (25, false));
     let mut table = String::from(
         "| fault | injected | ticks until neutral | arming while it lasts |\n|---|---|---:|---|\n",
     );
@@ -311,6 +342,7 @@ fn limits_are_the_same_times_at_every_tick_rate() {
         supply_mv: 3700,
         path_um: Some(path_um),
         path_is_new: true,
+        angle: None,
         in_time: true,
         memory_is_intact: true,
         output_answers: true,

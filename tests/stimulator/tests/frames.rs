@@ -93,7 +93,7 @@ fn each_way_to_be_wrong_has_a_name_and_is_counted() {
     assert_eq!(said, "NotAMessage");
     // Another version, whole in itself.
     let said = reaction(&mut device, &of_version(firmware::link::VERSION + 1, session, 1, &[0]));
-    assert_eq!(said, "Version { got: 4, known: 3 }");
+    assert_eq!(said, "Version { got: 5, known: 4 }");
     // None of it was acted upon: the frame that is due still is.
     assert!(reaction(&mut device, &good).contains("Done"));
     let report = reaction(&mut device, &frame(2, &Request::Report));
@@ -120,13 +120,16 @@ fn of_version(version: u8, session: SessionNumber, sequence: u16, content: &[u8]
     frame
 }
 
-/// A host of version 1 greets with nothing but the request's number: it is told which version the
-/// device has, and begins no session.
+/// A host of version 1 greets with nothing but the request's number, later ones with a nonce: each
+/// is told which version the device has, and begins no session.
 #[test]
-fn a_host_of_version_1_is_refused_by_name() {
+fn hosts_of_older_versions_are_refused_by_name() {
     let mut device = InProcess::boot(Memory::new());
-    let greeting = of_version(1, NO_SESSION, 65535, &[0]);
-    assert_eq!(reaction(&mut device, &greeting), "Version { got: 1, known: 3 }");
+    for (version, greeting) in [(1, &[0][..]), (2, &[0, 7]), (3, &[0, 7])] {
+        let greeting = of_version(version, NO_SESSION, 65535, greeting);
+        let said = format!("Version {{ got: {version}, known: 4 }}");
+        assert_eq!(reaction(&mut device, &greeting), said);
+    }
     let keep_alive = encode(NO_SESSION, 0, &Request::KeepAlive).expect("a frame");
     assert_eq!(reaction(&mut device, &keep_alive), "NoSession");
 }

@@ -5,7 +5,7 @@
 //! sends ten million; where it is not set there are 200,000.
 
 use firmware::Stimulus;
-use firmware::link::{Readings, Request, RowInputs};
+use firmware::link::{AngleReading, Readings, Request, RowInputs, Target};
 use firmware::safety::{CHANNELS, Fault, State};
 use stimulator_tests::world::{OF_ROWS, World};
 
@@ -77,6 +77,49 @@ fn row(chance: &mut Chance) -> [RowInputs; 2] {
     [inputs, RowInputs::default()]
 }
 
+/// An angle of a joint that moves, now and then a wrong one.
+fn angle(world: &mut World, chance: &mut Chance) -> AngleReading {
+    let fails = |chance: &mut Chance| chance.one_in(3000);
+    world.angle_urad =
+        (world.angle_urad + chance.below(20_001) as i32 - 10_000).clamp(0, 2_440_000);
+    let mut reading = AngleReading { time_us: world.now_us as u32, angle_urad: world.angle_urad };
+    match () {
+        () if fails(chance) => reading.time_us += 90_000,
+        () if fails(chance) => reading.time_us = reading.time_us.wrapping_sub(50_000),
+        () if fails(chance) => reading.angle_urad = 3_000_000,
+        () if fails(chance) => reading.angle_urad += 700_000,
+        () => (),
+    }
+    reading
+}
+
+fn target(chance: &mut Chance) -> Target {
+    let angle = chance.below(2_440_000) as f32 * 1e-6;
+    // Now and then refused.
+    let angle = if chance.one_in(500) { f32::NAN } else { angle };
+    Target { angle, velocity: chance.below(5) as f32 - 2.0, ..Target::default() }
+}
+
+/// The next message of a host with a controller, or a pause.
+fn next_controlled(world: &mut World, chance: &mut Chance, messages: &mut u64) {
+    // Readings come every 10 ms, unless they stop for a while.
+    if !chance.one_in(1500) {
+        while world.now_us < world.next_angle_us {
+            world.tick();
+        }
+        let request = Request::Angle(angle(world, chance));
+        world.next_angle_us = world.now_us + 10_000;
+        *messages += 1;
+        world.ask(request);
+        world.tick();
+    }
+    if chance.one_in(4) {
+        *messages += 1;
+        world.ask(Request::Target(target(chance)));
+    }
+    next(world, chance, messages);
+}
+
 /// The next message, or a pause.
 fn next(world: &mut World, chance: &mut Chance, messages: &mut u64) {
     let request = match chance.below(1000) {
@@ -122,6 +165,17 @@ fn next(world: &mut World, chance: &mut Chance, messages: &mut u64) {
     let (State::Latched(fault) | State::Acknowledged { fault, .. }) = world.state else { return };
     // The host has read that it is off, and arms again.
     *world.seen.entry(fault).or_default() += 1;
+    if world.is_controlled {
+        // A series that has ended, and the first angle of the next.
+        while world.now_us < world.next_angle_us + 25_000 {
+            world.tick();
+        }
+        world.ask(Request::Angle(AngleReading {
+            time_us: world.now_us as u32,
+            angle_urad: world.angle_urad,
+        }));
+        world.next_angle_us = world.now_us + 10_000;
+    }
     for request in [
         Request::Readings(Readings {
             supply_mv: 3700,
@@ -137,13 +191,12 @@ fn next(world: &mut World, chance: &mut Chance, messages: &mut u64) {
     }
 }
 
-#[test]
-fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
+/// Says what `next` says until enough was said.
+fn say(mut world: World, next: fn(&mut World, &mut Chance, &mut u64)) -> World {
     let count = std::env::var("VM_MESSAGES").ok().and_then(|text| text.parse().ok());
     let count: u64 = count.unwrap_or(200_000);
     let started = std::time::Instant::now();
     let mut chance = Chance(0x0dd_ba11_5eed);
-    let mut world = World::boot();
     let mut messages = 0;
     let (mut armed, mut ticks) = (0_u64, 0_u64);
     while messages < count {
@@ -163,4 +216,25 @@ fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
     // It was not off all the time.
     assert!(world.patient.pulses > count / 50, "{} pulses", world.patient.pulses);
     assert!(armed > ticks / 4);
+    world
+}
+
+#[test]
+fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
+    say(World::boot(), next);
+}
+
+/// The same of a device that controls a joint.
+#[test]
+fn whatever_is_said_to_a_controller_no_limit_is_broken_at_the_electrodes() {
+    let world = say(World::controlled(), next_controlled);
+    for fault in [
+        Fault::SensorMissing,
+        Fault::SensorTime,
+        Fault::SensorRange,
+        Fault::SensorJump,
+        Fault::StaleTarget,
+    ] {
+        assert!(world.seen.contains_key(&fault), "{fault:?} was not seen: {:?}", world.seen);
+    }
 }

@@ -7,8 +7,8 @@ use firmware::{MUSCLES, TYPES};
 
 const README: &str = include_str!("../../../firmware/README.md");
 
-/// Bytes per second of 115,200 Bd: a start bit, eight data bits and a stop bit.
-const LINE: usize = 115_200 / 10;
+/// Bytes per second of 460,800 Bd: a start bit, eight data bits and a stop bit.
+const LINE: usize = 460_800 / 10;
 
 /// Rows of the middle of a session of minutes; no word of them is zero.
 #[test]

@@ -4,11 +4,12 @@
 use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use firmware::link::{Answer, Electrode, Mode, Request, Upload};
+use firmware::link::{Answer, ControlUpload, Electrode, Mode, Request, Upload};
 use firmware::{NotStored, RamFlash, Slots};
 use stimulator_tests::client::{Client, ClientError};
 use stimulator_tests::device::InProcess;
 use stimulator_tests::host::{ELECTRODE, STIMULUS, fes};
+use stimulator_tests::joint::{control, muscles};
 use vm_nostd::MuscleParams;
 
 const BYTES: usize = 8192;
@@ -190,8 +191,13 @@ fn an_upload_that_was_refused_is_not_there_after_a_boot() {
 
 /// Memory with these two uploads, as another firmware may have left them.
 fn stored(uploads: &[Option<Upload>; 2]) -> RamFlash<BYTES> {
+    stored_with(uploads, None)
+}
+
+/// The same with a controller.
+fn stored_with(uploads: &[Option<Upload>; 2], control: Option<ControlUpload>) -> RamFlash<BYTES> {
     let mut bytes = [0; 2048];
-    let bytes = postcard::to_slice(uploads, &mut bytes).expect("room");
+    let bytes = postcard::to_slice(&(uploads, control), &mut bytes).expect("room");
     let mut buffer = [0; _];
     let mut slots = Slots::new(RamFlash::new(), &mut buffer);
     slots.store(bytes).expect("a memory");
@@ -236,7 +242,26 @@ fn what_is_restored_could_have_been_uploaded() {
     let memory = host.into_line().into_memory();
     let mut buffer = [0; _];
     let mut slots = Slots::new(memory, &mut buffer);
-    let uploads: [Option<Upload>; 2] =
+    let stored: ([Option<Upload>; 2], Option<ControlUpload>) =
         postcard::from_bytes(slots.load().expect("a content")).expect("uploads");
-    assert_eq!(uploads, [None, Some(fes())]);
+    assert_eq!(stored, ([None, Some(fes())], None));
+}
+
+/// A controller is restored if it and both of its muscles could have been uploaded.
+#[test]
+fn a_controller_that_is_restored_could_have_been_uploaded() {
+    let [flexor, extensor] = muscles().map(Some);
+    let heavy = flexor
+        .map(|upload| Upload { muscle: MuscleParams { mass: -1.0, ..upload.muscle }, ..upload });
+    let slow = ControlUpload { sensor_period_us: 10_001, ..control() };
+    for (uploads, control, is_controlled) in [
+        ([flexor, extensor], control(), true),
+        ([heavy, extensor], control(), false),
+        ([flexor, None], control(), false),
+        ([flexor, Some(fes())], control(), false),
+        ([flexor, extensor], slow, false),
+    ] {
+        let mut host = Client::new(InProcess::boot(stored_with(&uploads, Some(control))));
+        assert_eq!(host.greet().expect("a greeting").controlled, is_controlled);
+    }
 }

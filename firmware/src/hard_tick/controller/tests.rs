@@ -19,6 +19,7 @@ const OBSERVED: Observed = Observed {
     supply_mv: 3700,
     path_um: Some(160_000),
     path_is_new: true,
+    angle: None,
     in_time: true,
     memory_is_intact: true,
     output_answers: true,

@@ -1,5 +1,7 @@
 //! What memory loses between the link and the pulse timer, and how old a request may be.
 
+mod closed_loop;
+
 use super::{Aged, Device};
 use crate::between::fault::Fault;
 use crate::between::guarded::Guarded;
@@ -70,7 +72,7 @@ impl Bench {
         let mut bench = Self { device, ends, permission, plans };
         let muscle = PlacedMuscle::build(&UPLOAD, TimeStep::MILLISECOND).expect("a muscle");
         let bank = bench.ends.spare.take().expect("a bank");
-        bank[0] = Some(muscle);
+        bank.muscles[0] = Some(muscle);
         bench.order(Order::Load(0, bank));
         bench.read();
         bench.order(Order::Acknowledge(Fault::Boot));
@@ -122,13 +124,13 @@ fn a_row_that_lost_a_bit_while_it_waited_is_a_fault_and_moves_nothing() {
     let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
     bench.row(row());
     assert!(bench.tick());
-    let before = bench.device.ends.muscles[0].as_ref().expect("a muscle").words();
+    let before = bench.device.ends.bank.muscles[0].as_ref().expect("a muscle").words();
     let mut lost = row();
     lost.corrupt(|inputs| inputs[0].stimulation_frequency = 80.0);
     bench.row(lost);
     assert!(!bench.tick());
     assert_eq!(bench.state(), State::Latched(Fault::Checksum));
-    assert_eq!(bench.device.ends.muscles[0].as_ref().expect("a muscle").words(), before);
+    assert_eq!(bench.device.ends.bank.muscles[0].as_ref().expect("a muscle").words(), before);
     // It is over with the row.
     bench.order(Order::Acknowledge(Fault::Checksum));
     bench.order(Order::Arm);
@@ -286,7 +288,7 @@ fn requests_of_before_arming_are_kept_until_they_are_too_old() {
 fn a_muscle_that_lost_a_bit_is_a_fault() {
     let mut bench = Bench::armed(Limits::SURFACE.within_scale(&SCALE));
     assert!(bench.tick());
-    bench.device.ends.muscles[0].as_mut().expect("a muscle").flip_checksum_bit();
+    bench.device.ends.bank.muscles[0].as_mut().expect("a muscle").flip_checksum_bit();
     assert!(!bench.tick());
     assert_eq!(bench.state(), State::Latched(Fault::Checksum));
 }

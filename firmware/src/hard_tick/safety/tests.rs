@@ -26,6 +26,7 @@ fn observed(path_um: i32) -> Observed {
         supply_mv: 3700,
         path_um: Some(path_um),
         path_is_new: true,
+        angle: None,
         in_time: true,
         memory_is_intact: true,
         output_answers: true,
