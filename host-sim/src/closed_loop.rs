@@ -17,11 +17,11 @@ mod task;
 mod trial;
 mod tuner;
 
-pub use controller::{Controller, Kind, Settings};
-pub use patient::Patient;
+pub use controller::{AMPLITUDE, Controller, GREATEST_WIDTH, Kind, Settings, params};
+pub use patient::{ELECTRODE, Patient};
 pub use picture::picture;
 pub use plant::Plant;
 pub use study::{COLUMNS, Row, Study, StudyError, run};
-pub use task::Task;
+pub use task::{Motion, Task};
 pub use trial::{Instant, Score, Trial};
 pub use tuner::Tuned;

@@ -2,10 +2,12 @@
 //! host's.
 
 mod client;
+mod closed_loop;
 mod emulated;
 mod playback;
 
 pub use client::{Client, HilError, Line};
+pub use closed_loop::{Looped, close};
 pub use emulated::Emulated;
 pub use playback::{Played, play};
 

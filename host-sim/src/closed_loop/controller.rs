@@ -9,8 +9,9 @@ use vm_nostd::control::{
 };
 use vm_nostd::{FatigueParams, Fixed, RecruitmentCurve, Scalar, TimeStep};
 
-/// Amplitude of all pulses, A, and their greatest width, s.
+/// Amplitude of all pulses, A.
 pub const AMPLITUDE: f64 = 0.03;
+/// Their greatest width, s.
 pub const GREATEST_WIDTH: f64 = 5e-4;
 
 /// Filter time of derivatives, s.
@@ -75,6 +76,13 @@ impl Kind {
             Self::PidCurve => &PID,
             Self::Model | Self::ModelFixed => &MODEL,
         }
+    }
+}
+
+impl Kind {
+    /// The middle of all ranges, chosen by hand: where a tuner begins.
+    pub fn untuned(self) -> Settings {
+        self.ranges().iter().map(|&(least, most)| (0.5 * (least.ln() + most.ln())).exp()).collect()
     }
 }
 
@@ -160,54 +168,53 @@ impl Pi {
     }
 }
 
+/// Parameters of the model's controller for a task, with settings in the order of
+/// [`Kind::ranges`].
+pub fn params(task: Task, settings: &[f64]) -> FesControllerParams<2> {
+    let preset = task.joint();
+    let limb = task.limb();
+    let weight = limb.gravity + 5.0 * limb.inertia;
+    let [proportional, integral, derivative, expected_lag, cocontraction, lead_filter_time] =
+        settings[..]
+    else {
+        unreachable!("six settings")
+    };
+    FesControllerParams {
+        range: preset.range,
+        muscles: nominal(task),
+        paths: preset.muscles.map(|muscle| muscle.path()),
+        limb,
+        electrodes: [ELECTRODE; 2],
+        modulation: [Modulation::Width { amplitude: AMPLITUDE }; 2],
+        stimulation_frequency: FREQUENCY,
+        // Even a little of it stimulates at the threshold, of which the controller is not
+        // sure.
+        cocontraction: if cocontraction < NO_COCONTRACTION { 0.0 } else { cocontraction * weight },
+        measured: Measured::Angle,
+        feedback: PiParams {
+            proportional: proportional * weight,
+            integral: integral * weight,
+            derivative: derivative * weight,
+            derivative_filter: DERIVATIVE_FILTER,
+            most: 8.0 * weight,
+        },
+        expected_lag,
+        lead_filter_time,
+        fatigue: [Some(FatigueParams::QUADRICEPS); 2],
+        least_fitness: 0.3,
+        gain: Some(GainParams {
+            time: GAIN_TIME,
+            least: 0.3,
+            most: 2.0,
+            excitation: (0.1 * weight).max(0.01),
+        }),
+        torque: (-10.0 * weight, 10.0 * weight),
+    }
+}
+
 impl<S: Scalar> Modelled<S> {
     fn new(task: Task, settings: &[f64]) -> Result<Self, JointError> {
-        let preset = task.joint();
-        let limb = task.limb();
-        let weight = limb.gravity + 5.0 * limb.inertia;
-        let [proportional, integral, derivative, expected_lag, cocontraction, lead_filter_time] =
-            settings[..]
-        else {
-            unreachable!("six settings")
-        };
-        let controller = FesController::build(
-            &FesControllerParams {
-                range: preset.range,
-                muscles: nominal(task),
-                paths: preset.muscles.map(|muscle| muscle.path()),
-                limb,
-                electrodes: [ELECTRODE; 2],
-                modulation: [Modulation::Width { amplitude: AMPLITUDE }; 2],
-                stimulation_frequency: FREQUENCY,
-                // Even a little of it stimulates at the threshold, of which the controller is not
-                // sure.
-                cocontraction: if cocontraction < NO_COCONTRACTION {
-                    0.0
-                } else {
-                    cocontraction * weight
-                },
-                measured: Measured::Angle,
-                feedback: PiParams {
-                    proportional: proportional * weight,
-                    integral: integral * weight,
-                    derivative: derivative * weight,
-                    derivative_filter: DERIVATIVE_FILTER,
-                    most: 8.0 * weight,
-                },
-                expected_lag,
-                lead_filter_time,
-                fatigue: [Some(FatigueParams::QUADRICEPS); 2],
-                least_fitness: 0.3,
-                gain: Some(GainParams {
-                    time: GAIN_TIME,
-                    least: 0.3,
-                    most: 2.0,
-                    excitation: (0.1 * weight).max(0.01),
-                }),
-                torque: (-10.0 * weight, 10.0 * weight),
-            },
-            TimeStep::MILLISECOND,
-        )?;
+        let controller = FesController::build(&params(task, settings), TimeStep::MILLISECOND)?;
         let state = controller.start(S::from_f64(task.start()));
         Ok(Self { controller, state })
     }

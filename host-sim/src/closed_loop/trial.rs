@@ -4,7 +4,7 @@ use super::controller::{AMPLITUDE, Controller, GREATEST_WIDTH, Kind};
 use super::patient::Patient;
 use super::plant::{PULSE_TICKS, Plant, TICK};
 use super::random::Random;
-use super::task::{APPROACH, Task};
+use super::task::{APPROACH, Motion, Task};
 use vm_nostd::control::JointError;
 
 /// Degrees beyond the joint's range in which its stops are pressed as by no controlled limb.
@@ -63,9 +63,19 @@ pub struct Trial<'a> {
 
 impl Trial<'_> {
     /// Runs it; `watch` sees every pulse.
-    pub fn run(&self, mut watch: impl FnMut(Instant)) -> Result<Score, JointError> {
-        let own = |error| JointError { muscle: None, error };
+    pub fn run(&self, watch: impl FnMut(Instant)) -> Result<Score, JointError> {
         let mut controller = Controller::new(self.kind, self.task, self.settings)?;
+        self.run_by(|target, measured| Ok(controller.step(target, measured)), watch)
+    }
+
+    /// Runs it with a controller of the caller's: pulse widths of flexor and extensor (s) for a
+    /// target and a measured angle (rad), in every tick.
+    pub fn run_by<E: From<JointError>>(
+        &self,
+        mut controller: impl FnMut(Motion, f64) -> Result<[f64; 2], E>,
+        mut watch: impl FnMut(Instant),
+    ) -> Result<Score, E> {
+        let own = |error| JointError { muscle: None, error };
         let mut plant = Plant::at_rest(self.task, self.patient).map_err(own)?;
         let duration = self.task.duration(self.tuning);
         let ticks = (duration / TICK) as usize;
@@ -86,7 +96,7 @@ impl Trial<'_> {
             let place = tick % line.len();
             line[place] = plant.angle;
             let oldest = line[(tick + 1) % line.len()];
-            let commanded = controller.step(target, oldest + self.patient.noise * noise.normal());
+            let commanded = controller(target, oldest + self.patient.noise * noise.normal())?;
             if tick % PULSE_TICKS == 0 {
                 widths = commanded;
                 let good = |width: &f64| (0.0..=GREATEST_WIDTH).contains(width);

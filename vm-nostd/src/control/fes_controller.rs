@@ -484,13 +484,6 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         }
     }
 
-    /// Checksum of all coefficients.
-    pub fn checksum(&self) -> u32 {
-        let mut checksum = Checksum::EMPTY;
-        self.sum(&mut checksum);
-        checksum.value()
-    }
-
     /// Words of a saved state of this controller.
     pub fn saved_words(&self) -> usize {
         let tired = self.inverses.iter().filter(|inverse| inverse.fatigue.is_some()).count();
