@@ -43,8 +43,8 @@ pub type Converter = ExclusiveDevice<Spi<SPI1>, Pin, NoDelay>;
 /// The output stage.
 pub type Stage = OutputStage<Converter, Pin, CHANNELS>;
 
-/// Baud rate of the link. A byte takes 21.7 µs: longer than the pulse timer's interrupt, which alone
-/// may delay its own, and whose deadline is the shortest phase. None is lost.
+/// Baud rate of the link. A byte takes 21.7 µs: longer than the pulse timer's interrupt, which
+/// alone may delay its own, and whose deadline is the shortest phase. None is lost.
 const BAUD: u32 = 460_800;
 const _: () = assert!(10_000_000 / BAUD > LEAST_PHASE_US, "bytes that the pulse timer loses");
 

@@ -9,8 +9,8 @@ use crate::between::shared::Taker;
 /// A converter or an inertial unit of the board puts its readings together in an interrupt of its
 /// own and hands them over here; the guard goes around a value as early as it is known to be right.
 pub trait AngleSensor {
-    /// The newest reading since the last call, if there is one. The hard tick calls it once: it must
-    /// not wait.
+    /// The newest reading since the last call, if there is one. The hard tick calls it once: it
+    /// must not wait.
     fn read(&mut self) -> Option<Guarded<AngleReading>>;
 }
 

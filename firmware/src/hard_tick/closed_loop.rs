@@ -1,8 +1,8 @@
 //! The joint's controller between its sensor and its electrodes.
 //!
-//! Between readings the angle goes on at the speed of the last two, for two periods of the sensor at
-//! most, and stays then; between targets the wanted angle goes on at its velocity. How old either
-//! may be is in [`Limits`](crate::Limits): older ones are faults.
+//! Between readings the angle goes on at the speed of the last two, for two periods of the sensor
+//! at most, and stays then; between targets the wanted angle goes on at its velocity. How old
+//! either may be is in [`Limits`](crate::Limits): older ones are faults.
 
 use crate::between::guarded::{Guarded, Sum};
 use crate::between::motion::{AngleReading, Target};

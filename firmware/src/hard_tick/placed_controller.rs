@@ -55,8 +55,8 @@ pub(crate) struct PlacedController {
 }
 
 impl PlacedController {
-    /// Builds a controller of two muscles, at rest in the middle of the joint's range; the error has
-    /// muscle, field, value and limit.
+    /// Builds a controller of two muscles, at rest in the middle of the joint's range; the error
+    /// has muscle, field, value and limit.
     #[inline(never)]
     pub(crate) fn build(
         muscles: [Option<&Upload>; MUSCLES],

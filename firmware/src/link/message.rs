@@ -72,7 +72,8 @@ pub enum Request {
         place: u8,
     },
     /// A controller of the joint that both muscles move, or none: validated, stored, and at rest.
-    /// Uploading a muscle later removes it. With a controller rows are refused. Refused while armed.
+    /// Uploading a muscle later removes it. With a controller rows are refused. Refused while
+    /// armed.
     Control(Option<ControlUpload>),
     /// What the controller is to do, for [`Limits::targets_ms`](crate::Limits::targets_ms) at most.
     /// It steps every tick while armed, and begins anew with the first target after arming. Refused

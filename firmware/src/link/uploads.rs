@@ -1,5 +1,5 @@
-//! Uploaded muscles and the controller of their joint: validated, stored and built. Restored uploads
-//! are validated like new ones.
+//! Uploaded muscles and the controller of their joint: validated, stored and built. Restored
+//! uploads are validated like new ones.
 
 use crate::between::link_queues::Bank;
 use crate::between::motion::Target;

@@ -1,5 +1,5 @@
-//! The loop of `vm loop` with the controller on a device, in lockstep: a tick of the plant is a step
-//! of the device. Every bit is compared with the host's own controller.
+//! The loop of `vm loop` with the controller on a device, in lockstep: a tick of the plant is a
+//! step of the device. Every bit is compared with the host's own controller.
 //!
 //! The device stays disarmed, so that none of its limits is in the way of a slow line.
 
