@@ -148,6 +148,10 @@ fn chosen(
                     ("survived", format!("{} ms of tests", suite::cost_ms(&tests, number)))
                 }
                 Verdict::Unreached => ("unreached", String::new()),
+                Verdict::Starved(of) => {
+                    eprintln!("no CPU for {of}: {}", list[number].name);
+                    continue;
+                }
             };
             source.outcomes.add(what, outcome, &detail)?;
             if !matches!(outcome, "caught" | "timeout") {
@@ -180,19 +184,24 @@ fn rebuilt(
                 _ => continue,
             }
             compile::write(&changed, &list[number].alone(&text))?;
-            let outcome = match compile::changed(&places.tree, packages) {
-                Ok(None) => Ok(("unviable", String::new())),
-                Ok(Some(programs)) => {
-                    suite::rebuilt(&programs, &mut tests).map(|verdict| match verdict {
-                        Verdict::Caught(by) => ("caught", by),
-                        Verdict::Timeout(of) => ("timeout", of),
-                        _ => ("survived", "built for itself".into()),
-                    })
-                }
+            let verdict = match compile::changed(&places.tree, packages) {
+                Ok(None) => Ok(None),
+                Ok(Some(programs)) => suite::rebuilt(&programs, &mut tests).map(Some),
                 Err(error) => Err(error),
             };
             compile::write(&changed, &text)?;
-            let (outcome, detail) = outcome?;
+            let (outcome, detail) = match verdict? {
+                None => ("unviable", String::new()),
+                Some(Verdict::Caught(by)) => ("caught", by),
+                Some(Verdict::Timeout(of)) => ("timeout", of),
+                Some(Verdict::Survived | Verdict::Unreached) => {
+                    ("survived", "built for itself".into())
+                }
+                Some(Verdict::Starved(of)) => {
+                    eprintln!("no CPU for {of}: {}", list[number].name);
+                    continue;
+                }
+            };
             eprintln!("{outcome}: {}", list[number].name);
             source.outcomes.add(what, outcome, &detail)?;
         }

@@ -3,13 +3,17 @@
 use crate::compile::Program;
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, ExitStatus, Output};
 
 /// CPU time for all tests of one mutant.
 pub const BUDGET_MS: u64 = 20_000;
 /// Tests that take less together run in one process.
 const TOGETHER_MS: u64 = 150;
+/// Longest time of a run on the clock, s. Only a machine that is busy with something else, or a
+/// test that sleeps for ever, takes that long: nothing is known of the mutant then.
+const PATIENCE_S: u64 = 900;
 
 /// One test.
 #[derive(Clone, Debug)]
@@ -34,6 +38,38 @@ pub enum Verdict {
     Survived,
     /// No test reached it.
     Unreached,
+    /// These tests had no CPU for a verdict.
+    Starved(String),
+}
+
+/// How a run of tests ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    Passed,
+    Failed,
+    /// All of its CPU time was taken.
+    OutOfCpu,
+    /// The clock ran out, not the CPU time.
+    OutOfPatience,
+    /// They did not run.
+    Broken,
+}
+
+/// Of a run, by the exit code of `timeout`: 128 and the signal that ended its command, if one did.
+/// It may end by that signal, too.
+fn end(status: ExitStatus) -> End {
+    const XCPU: i32 = 24;
+    let code = status.code().or_else(|| status.signal().map(|signal| 128 + signal));
+    match code {
+        Some(0) => End::Passed,
+        // A failed test; instructions and accesses that are not allowed, and aborts.
+        Some(101 | 132..=136 | 139) => End::Failed,
+        Some(code) if code == 128 + XCPU => End::OutOfCpu,
+        // What it says of itself, and of a command that was killed: it needed this, or memory ran
+        // out elsewhere.
+        Some(124 | 137) => End::OutOfPatience,
+        _ => End::Broken,
+    }
 }
 
 /// Everything that children have taken so far.
@@ -53,10 +89,10 @@ fn run(
     seconds: u64,
     environment: &[(&str, &str)],
 ) -> Result<Output, String> {
-    // What waits for nothing, or takes all memory, is stopped too.
-    let limits = format!("ulimit -t {seconds}; ulimit -v 4000000; exec \"$@\"");
+    // What takes all memory is stopped, too. SIGXCPU comes at the soft limit only.
+    let limits = format!("ulimit -c 0; ulimit -S -t {seconds}; ulimit -v 4000000; exec \"$@\"");
     Command::new("timeout")
-        .args(["--kill-after=1", "120", "sh", "-c", &limits, "sh"])
+        .args(["--kill-after=1", &PATIENCE_S.to_string(), "sh", "-c", &limits, "sh"])
         .arg(&program.path)
         .args(names)
         .args(["--exact", "--test-threads=1"])
@@ -82,9 +118,9 @@ pub fn trace(programs: &[Program], log: &Path) -> Result<Vec<Test>, String> {
             let environment =
                 [("VM_MUTANT", "trace"), ("VM_MUTANT_LOG", log.to_str().unwrap_or_default())];
             let output = run(program, &[name], 120, &environment)?;
-            if !output.status.success() {
+            if end(output.status) != End::Passed {
                 let text = String::from_utf8_lossy(&output.stdout);
-                return Err(format!("{name} fails without a mutant:\n{text}"));
+                return Err(format!("{name} without a mutant: {}\n{text}", output.status));
             }
             let cpu_ms = (children_ms() - before).max(10);
             let reaches = reached(log);
@@ -129,6 +165,7 @@ pub fn chosen(tests: &mut [Test], mutant: usize, log: &Path) -> Result<Verdict, 
     // A verdict about nothing is none.
     if !reached(log).contains(&mutant) {
         return match verdict {
+            Verdict::Starved(_) => Ok(verdict),
             Verdict::Survived => Ok(Verdict::Unreached),
             other => Err(format!("{other:?}, but mutant {mutant} was not reached")),
         };
@@ -174,31 +211,64 @@ fn first_failure(
         rest = later;
         let expected: u64 = now.iter().map(|&test| tests[test].cpu_ms).sum();
         // A test takes as long as it did, or some times that where a mutant makes it busy.
-        let most_ms = (5 * expected + 2_000).min(BUDGET_MS - spent);
+        let (most_ms, left_ms) = (5 * expected + 2_000, BUDGET_MS - spent);
         let names: Vec<&str> = now.iter().map(|&test| &*tests[test].name).collect();
-        let output = run(&tests[first].program, &names, most_ms.div_ceil(1000), environment)?;
-        if output.status.success() {
-            continue;
-        }
+        let seconds = most_ms.min(left_ms).div_ceil(1000);
+        let output = run(&tests[first].program, &names, seconds, environment)?;
         let text = String::from_utf8_lossy(&output.stdout);
         let failed = text.lines().find_map(|line| {
             line.strip_prefix("test ")?.strip_suffix(" ... FAILED").map(str::to_owned)
         });
-        if let Some(name) = failed {
-            if let Some(test) = tests.iter_mut().find(|test| test.name == name) {
-                test.noticed += 1;
-            }
-            return Ok(Verdict::Caught(name));
-        }
         let all = names.join(" ");
-        // Killed by a limit, by itself or through `timeout`; else it ended in another way.
-        return Ok(match std::os::unix::process::ExitStatusExt::signal(&output.status) {
-            Some(9 | 24) => Verdict::Timeout(all),
-            _ => match output.status.code() {
-                Some(124 | 137 | 152) => Verdict::Timeout(all),
-                _ => Verdict::Caught(all),
-            },
-        });
+        match (failed, end(output.status)) {
+            (_, End::Passed) => {}
+            (Some(name), _) => {
+                if let Some(test) = tests.iter_mut().find(|test| test.name == name) {
+                    test.noticed += 1;
+                }
+                return Ok(Verdict::Caught(name));
+            }
+            (None, End::Failed) => return Ok(Verdict::Caught(all)),
+            (None, End::OutOfPatience) => return Ok(Verdict::Starved(all)),
+            (None, End::Broken) => {
+                let text = String::from_utf8_lossy(&output.stderr);
+                return Err(format!("{all}: {}\n{text}", output.status));
+            }
+            // What the tests before have left of the budget was too little to blame the mutant.
+            (None, End::OutOfCpu) if left_ms < most_ms && spent > 0 => break,
+            (None, End::OutOfCpu) => return Ok(Verdict::Timeout(all)),
+        }
     }
     Ok(Verdict::Survived)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{End, Program, end, run};
+    use std::fs;
+    use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn only_a_failed_test_and_its_own_cpu_time_are_held_against_a_mutant() {
+        let folder = std::env::temp_dir().join(format!("suite-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        for (does, ends) in [
+            ("exit 0", End::Passed),
+            ("exit 101", End::Failed),
+            ("kill -ABRT $$", End::Failed),
+            ("while :; do :; done", End::OutOfCpu),
+            // By whom, nobody knows: where memory has run out, by the kernel.
+            ("kill -KILL $$", End::OutOfPatience),
+            ("exit 124", End::OutOfPatience),
+            ("no-such-command", End::Broken),
+        ] {
+            let path = folder.join("program");
+            fs::write(&path, format!("#!/bin/sh\n{does}\n")).expect("a script");
+            fs::set_permissions(&path, fs::Permissions::from_mode(0o700)).expect("its owner");
+            let program = Program { path, folder: folder.clone() };
+            let output = run(&program, &["a_test"], 1, &[]).expect("it runs");
+            assert_eq!(end(output.status), ends, "{does}: {}", output.status);
+        }
+        fs::remove_dir_all(folder).expect("its folder");
+    }
 }
