@@ -23,6 +23,14 @@ pub struct Program {
     pub folder: PathBuf,
 }
 
+impl Program {
+    /// Its folder and name, without what tells builds apart.
+    pub fn name(&self) -> (&Path, &str) {
+        let name = self.path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
+        (&self.folder, name.rsplit_once('-').map_or(name, |(name, _)| name))
+    }
+}
+
 /// What was built.
 #[derive(Debug, Default)]
 pub struct Built {
@@ -42,11 +50,18 @@ struct Complaint {
     spans: Vec<(String, usize, usize, bool)>,
 }
 
-/// Builds the tests of these packages in the tree.
-fn build(tree: &Path, packages: &[&str]) -> Result<(Vec<Program>, Vec<Complaint>, String), String> {
+/// All tests of a package: those in its library, and the one program of all others.
+const ALL: [&str; 3] = ["--lib", "--test", "together"];
+
+/// Builds these tests of these packages in the tree.
+fn build(
+    tree: &Path,
+    packages: &[&str],
+    tests: &[&str],
+) -> Result<(Vec<Program>, Vec<Complaint>, String), String> {
     let mut command = Command::new("cargo");
     command.args(["test", "--no-run", "--release", "--message-format", "json"]);
-    command.args(["--lib", "--test", "together"]).current_dir(tree).stderr(Stdio::piped());
+    command.args(tests).current_dir(tree).stderr(Stdio::piped());
     for package in packages {
         command.args(["--package", package]);
     }
@@ -118,17 +133,32 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
 
 /// The tests without a change.
 pub fn plain(tree: &Path, packages: &[&str]) -> Result<Vec<Program>, String> {
-    let (programs, complaints, log) = build(tree, packages)?;
+    let (programs, complaints, log) = build(tree, packages, &ALL)?;
     if !complaints.is_empty() || programs.is_empty() {
         return Err(format!("does not build without a change:\n{log}"));
     }
     Ok(programs)
 }
 
-/// Whether the tests build, and if so with which programs.
+/// The tests in the library of a package, or none if it does not build.
+pub fn changed_library(tree: &Path, package: &str) -> Result<Option<Vec<Program>>, String> {
+    viable(build(tree, &[package], &["--lib"])?)
+}
+
+/// All tests of these packages, or none if they do not build.
 pub fn changed(tree: &Path, packages: &[&str]) -> Result<Option<Vec<Program>>, String> {
-    let (programs, complaints, _) = build(tree, packages)?;
-    Ok(complaints.is_empty().then_some(programs))
+    viable(build(tree, packages, &ALL)?)
+}
+
+/// Only what the compiler refuses is no Rust.
+fn viable(
+    (programs, complaints, log): (Vec<Program>, Vec<Complaint>, String),
+) -> Result<Option<Vec<Program>>, String> {
+    match (programs.is_empty(), complaints.is_empty()) {
+        (_, false) => Ok(None),
+        (false, true) => Ok(Some(programs)),
+        (true, true) => Err(format!("no programs:\n{log}")),
+    }
 }
 
 /// The tests with all mutants. `root` has the sources as they are, `tree` is a copy.
@@ -168,7 +198,7 @@ pub fn woven(
             write(&tree.join(file), &text.text)?;
             texts.insert(file, text);
         }
-        let (programs, complaints, log) = build(tree, packages)?;
+        let (programs, complaints, log) = build(tree, packages, &ALL)?;
         if complaints.is_empty() {
             if programs.is_empty() {
                 return Err(format!("no programs:\n{log}"));
@@ -176,6 +206,7 @@ pub fn woven(
             built.programs = programs;
             for woven in texts.into_values() {
                 built.apart.extend(woven.apart);
+                built.unviable.extend(woven.unviable);
             }
             return Ok(built);
         }

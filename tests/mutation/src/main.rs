@@ -184,11 +184,7 @@ fn rebuilt(
                 _ => continue,
             }
             compile::write(&changed, &list[number].alone(&text))?;
-            let verdict = match compile::changed(&places.tree, packages) {
-                Ok(None) => Ok(None),
-                Ok(Some(programs)) => suite::rebuilt(&programs, &mut tests).map(Some),
-                Err(error) => Err(error),
-            };
+            let verdict = built_alone(places, packages, &mut tests);
             compile::write(&changed, &text)?;
             let (outcome, detail) = match verdict? {
                 None => ("unviable", String::new()),
@@ -208,6 +204,26 @@ fn rebuilt(
         source.save(places)?;
     }
     Ok(())
+}
+
+/// What the tests make of the change that is in the tree; none, if it does not compile. First those
+/// in the library, which are built and run much sooner.
+fn built_alone(
+    places: &Places,
+    packages: &[&str],
+    tests: &mut [suite::Test],
+) -> Result<Option<Verdict>, String> {
+    let Some(programs) = compile::changed_library(&places.tree, packages[0])? else {
+        return Ok(None);
+    };
+    match suite::rebuilt(&programs, tests)? {
+        Verdict::Survived => match compile::changed(&places.tree, packages)? {
+            // It compiles, but not for the programs that use it.
+            None => Ok(None),
+            Some(programs) => suite::rebuilt(&programs, tests).map(Some),
+        },
+        verdict => Ok(Some(verdict)),
+    }
 }
 
 /// The mutants of each source that no test notices, as they are listed with a reason.

@@ -18,6 +18,8 @@ pub struct Woven {
     pub places: Vec<Placed>,
     /// Mutants that are not in it, and why.
     pub apart: BTreeMap<usize, String>,
+    /// Mutants that are no Rust, and why.
+    pub unviable: BTreeMap<usize, String>,
 }
 
 /// What the compiler may complain of.
@@ -62,6 +64,10 @@ pub fn weave(
         let start = mutant.bytes(source).start;
         let apart = match sites.found.get(&(mutant.genre, start)) {
             None => "not found in the syntax".into(),
+            Some((Site::Chained, _)) if mutant.replacement == "||" => {
+                woven.unviable.insert(number, "only && chains with let".into());
+                continue;
+            }
             Some((Site::Chained, _)) => "chained with let".into(),
             Some((_, Context::Constant)) => "a constant".into(),
             Some((_, Context::ConstFunction(function))) if evaluated.contains(&function.name) => {
