@@ -94,10 +94,13 @@ impl Row {
         Some(Self { source, content, counts })
     }
 
-    /// Caught of those that compile, in %; what was not measured counts as not caught.
+    /// Caught of those that compile, in %; what was not measured counts as not caught. All of none.
     pub fn percent(&self) -> f64 {
         let [mutants, caught, timeout, _, unviable, _] = self.counts;
-        100.0 * (caught + timeout) as f64 / ((mutants - unviable) as f64).max(1.0)
+        match mutants - unviable {
+            0 => 100.0,
+            all => 100.0 * (caught + timeout) as f64 / all as f64,
+        }
     }
 }
 

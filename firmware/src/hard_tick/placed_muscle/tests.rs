@@ -1,6 +1,7 @@
 //! What memory loses of a muscle: any bit, seen at the next check, and never forgotten.
 
 use super::{Demand, PlacedMuscle};
+use crate::between::guarded::Guarded;
 use crate::between::stimulus::Stimulus;
 use crate::link::{Electrode, Mode, RowInputs, RowOutputs, Upload};
 use crate::rig::MUSCLE;
@@ -10,6 +11,13 @@ const CURVE: RecruitmentCurveParams =
     RecruitmentCurveParams { threshold: 4e-3, saturation: 12e-3, chronaxie: 200e-6, slope: 2.0 };
 const ELECTRODE: Electrode =
     Electrode { channel: 2, curve: CURVE, width_us: 200, gap_us: 40, recovery: 3 };
+const STIMULUS: Stimulus = Stimulus {
+    amplitude_ua: 10_000,
+    width_us: 200,
+    gap_us: 50,
+    frequency_tenths_pps: 400,
+    recovery: 3,
+};
 const INPUTS: RowInputs =
     RowInputs { activation: 0.5, path_length: 0.16, stimulation_frequency: 40.0 };
 
@@ -137,5 +145,27 @@ fn every_kind_of_demand_is_told_from_the_others() {
         for other in &demands[..index] {
             assert_ne!(sum(one), sum(other), "{one:?} and {other:?}");
         }
+    }
+}
+
+/// Where one demand ends and the next one begins is in the sum, too.
+#[test]
+fn a_demand_is_not_taken_for_another_one_and_a_part_of_the_next() {
+    let words = |high: u16, low: u16| u32::from(high) << 16 | u32::from(low);
+    for (channel, next, amplitude_ua) in
+        (0..64).map(|index| (index / 16, index / 4 % 4, (index % 4) as u32))
+    {
+        let one = Stimulus { amplitude_ua, ..STIMULUS };
+        // Its words, moved by one.
+        let moved = Stimulus {
+            amplitude_ua: words(one.width_us, one.gap_us),
+            width_us: one.frequency_tenths_pps,
+            gap_us: one.recovery.into(),
+            frequency_tenths_pps: 0,
+            recovery: 0,
+        };
+        let mut demands = Guarded::new([Demand::Pulses(channel, one), Demand::Nothing]);
+        demands.corrupt(|demands| *demands = [Demand::Nothing, Demand::Pulses(next, moved)]);
+        assert!(demands.get().is_none(), "{channel} {next} {amplitude_ua}");
     }
 }
