@@ -11,3 +11,6 @@ pub(crate) mod shared;
 pub(crate) mod step;
 pub(crate) mod stimulus;
 pub(crate) mod waveform;
+
+#[cfg(test)]
+mod tests;
