@@ -65,6 +65,12 @@ fn a_generator_that_gives_nothing_is_not_waited_for_for_ever() {
         assert_eq!(Noise::new(&mut generator).number(0), None, "{then:?}");
         assert!(generator.looked <= 10_000, "{then:?}");
     }
+    // It may err eight times for a number.
+    for (errors, number) in [(8, Some(2)), (9, None)] {
+        let looks = [SEED; 9];
+        let mut generator = script(&looks[..errors], &[1, 2], READY);
+        assert_eq!(Noise::new(&mut generator).number(0), number, "{errors} errors");
+    }
     // Nothing but the same number.
     let mut generator = script(&[], &[7; 100], READY);
     assert_eq!(Noise::new(&mut generator).number(0), None);

@@ -73,6 +73,27 @@ fn stimuli() -> impl Strategy<Value = Stimulus> {
         .prop_filter("fits its period", |stimulus| stimulus.validate(&SCALE).is_ok())
 }
 
+/// What would be measured of a pulse that were not balanced: what the anodic phase lacks is
+/// negative.
+#[test]
+fn a_net_charge_is_measured_with_its_sign() {
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 50,
+        frequency_tenths_pps: 400,
+        recovery: 2,
+    };
+    let balanced = Pulse::new(&stimulus, &SCALE).expect("a legal command");
+    let mut pulse = balanced;
+    // The recharge phase lasts for 400 us.
+    pulse.phases[4].counts -= 3;
+    assert_eq!(pulse.net_charge(), -1_200);
+    let mut pulse = balanced;
+    pulse.phases[1].duration_us -= 1;
+    assert_eq!(pulse.net_charge(), i64::from(balanced.phases[1].counts));
+}
+
 proptest! {
     #![proptest_config(config(20_000))]
 
