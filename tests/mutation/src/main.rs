@@ -45,6 +45,13 @@ fn main() {
     }
 }
 
+impl Places {
+    /// Of this process: the mutants that tests reach.
+    fn reached(&self) -> PathBuf {
+        self.known.join(format!("reached.{}", std::process::id()))
+    }
+}
+
 fn places(root: &Path, work: &Path) -> Places {
     Places {
         root: root.into(),
@@ -107,7 +114,7 @@ fn chosen(
     again: bool,
 ) -> Result<(), String> {
     let built = compile::woven(&places.root, &places.tree, packages, list)?;
-    let log = places.known.join("reached");
+    let log = places.reached();
     let mut tests = suite::trace(&built.programs, &log)?;
     eprintln!(
         "{} mutants: {} unviable, {} not chosen at run time, {} reached by {} tests",
@@ -171,7 +178,7 @@ fn rebuilt(
     sources: Vec<Source>,
 ) -> Result<(), String> {
     let programs = compile::plain(&places.tree, packages)?;
-    let mut tests = suite::trace(&programs, &places.known.join("reached"))?;
+    let mut tests = suite::trace(&programs, &places.reached())?;
     for mut source in sources {
         tests.iter_mut().for_each(|test| test.noticed = 0);
         let path = places.root.join(&source.file);

@@ -118,6 +118,12 @@ fn most_of_a_test_s() -> u64 {
     std::env::var("VM_TEST_S").ok().and_then(|text| text.parse().ok()).unwrap_or(120)
 }
 
+/// Whether a test is not among them: its name begins with a word of `VM_SKIP`.
+fn is_skipped(name: &str) -> bool {
+    let skip = std::env::var("VM_SKIP").unwrap_or_default();
+    skip.split_whitespace().any(|word| name.starts_with(word))
+}
+
 /// Finds all tests and what they reach; all of them have to pass. One that takes too long is left
 /// out, and notices nothing.
 pub fn trace(programs: &[Program], log: &Path) -> Result<Vec<Test>, String> {
@@ -129,7 +135,9 @@ pub fn trace(programs: &[Program], log: &Path) -> Result<Vec<Test>, String> {
             .output()
             .map_err(|error| format!("{}: {error}", program.path.display()))?;
         for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let Some(name) = line.strip_suffix(": test") else { continue };
+            let Some(name) = line.strip_suffix(": test").filter(|name| !is_skipped(name)) else {
+                continue;
+            };
             let _ = fs::remove_file(log);
             let before = children_ms();
             let environment =
