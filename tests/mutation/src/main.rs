@@ -30,14 +30,14 @@ struct Places {
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["chosen" | "again" | "rebuilt", root, work, ..] => {
+        ["chosen" | "again" | "rebuilt" | "known", root, work, ..] => {
             let places = places(Path::new(root), Path::new(work));
             measure(&places, &arguments[0], &arguments[3..])
         }
         ["report", root, work, ..] => {
             report::report(&places(Path::new(root), Path::new(work)), &arguments[3..])
         }
-        _ => Err("mutation chosen|again|rebuilt|report ROOT WORK FILE...".into()),
+        _ => Err("mutation chosen|again|rebuilt|known|report ROOT WORK FILE...".into()),
     };
     if let Err(error) = result {
         eprintln!("{error}");
@@ -87,6 +87,7 @@ fn measure(places: &Places, how: &str, files: &[String]) -> Result<(), String> {
             let list = mutant::list(&places.root, package, &files)?;
             let sources = sources(places, &files, &list)?;
             match how {
+                "known" => sources.iter().try_for_each(|source| source.save(places))?,
                 "rebuilt" => rebuilt(places, &[package, tests], &list, sources)?,
                 _ => chosen(places, &[package, tests], &list, sources, how == "again")?,
             }

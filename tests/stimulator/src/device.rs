@@ -151,6 +151,11 @@ impl<F: MultiwriteNorFlash> InProcess<F> {
         self.ticks
     }
 
+    /// Whether its link has nothing to do.
+    pub fn is_idle(&self) -> bool {
+        self.server.is_idle()
+    }
+
     /// Takes what it has to say, without the time's passing.
     pub fn drain(&mut self) {
         while self.server.transmit().is_some() {}

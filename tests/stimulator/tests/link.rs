@@ -1,6 +1,6 @@
 //! The link: what a host can do to a device, and what nothing on the line can.
 
-use firmware::link::{Answer, Electrode, Readings, Request, RowInputs, Upload};
+use firmware::link::{Answer, Electrode, Readings, Request, RowInputs, Upload, encode};
 use firmware::safety::{Fault, NotArmed, State};
 use firmware::{MUSCLES, Stimulus};
 use stimulator_tests::client::{Client, ClientError};
@@ -50,6 +50,26 @@ fn an_activation_becomes_pulses_once_somebody_has_armed() {
     (0..1000).for_each(|_| host.line().tick());
     assert_eq!(host.line().flowed(), 0);
     assert_eq!(report(&mut host).state, State::Latched(Fault::Silence));
+}
+
+/// The core may sleep while the link is idle: not while the tick has its order, or an answer is on
+/// its way.
+#[test]
+fn the_link_is_idle_when_everything_is_said() {
+    let mut host = booted();
+    host.line().drain();
+    assert!(host.line().is_idle());
+    let (session, sequence) = host.session();
+    let frame = encode(session, sequence, &Request::Report).expect("a short one");
+    host.send_raw(&frame);
+    assert!(host.line().is_idle());
+    // It arrives behind this tick, and the next one answers it.
+    host.line().tick();
+    assert!(!host.line().is_idle());
+    host.line().tick();
+    assert!(!host.line().is_idle());
+    host.line().drain();
+    assert!(host.line().is_idle());
 }
 
 #[test]
