@@ -1,5 +1,5 @@
-//! The mechanics: fascicles between their mass and the tendon.
+//! The mechanics: a mass between the fascicles and the tendon.
 
-mod abreast;
 pub(crate) mod contraction;
 mod decay;
+mod elementwise;

@@ -261,7 +261,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             &contractile,
         );
         status.set(Status::MECHANICS_UNSETTLED, !end.settled);
-        status.set(Status::FASCICLE_VELOCITY_LIMITED, end.held);
+        status.set(Status::FASCICLE_VELOCITY_LIMITED, end.velocity_limited);
         state.speed = end.speed;
         let Motion { travel, velocity } = end.motion;
         state.path_length = input.path_length;

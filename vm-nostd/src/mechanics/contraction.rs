@@ -1,21 +1,21 @@
-//! The mechanics: a mass between tendon and fascicles,
+//! The equation of motion of a mass between tendon and fascicles,
 //! (m/2) d²x/dt² = F0 (F_se - F_ce'), x = L L_ce0.
 //!
-//! Active, the fascicles follow the tendon within 10 to 50 µs; passive, they ring on it at some
-//! 400 Hz. One implicit midpoint rule, fitted to both ends, does for both: a substep's forces are
-//! balanced once, at its middle, for the mean velocity there, with the branch of FV told by the
-//! sign of the balance at V = 0. From the velocity foreseen, FV is followed as the hyperbola that
-//! has its slope and curvature there, which it is where one fibre type acts alone: what is left to
-//! solve is quadratic, and its root right even where the path's speed jumps.
+//! Active fascicles follow the tendon within 10 to 50 µs; passive fascicles ring on it at about
+//! 400 Hz. One implicit midpoint rule covers both cases. Each substep solves the force balance
+//! once, at mid-substep, for the mean velocity. The FV branch is chosen by the sign of the net
+//! force at V = 0. Around the predicted velocity, FV is replaced by the hyperbola with the same
+//! value, slope and curvature; this is exact if only one fibre type is active. The equation left to
+//! solve is quadratic, and its root is accurate even if the path velocity jumps.
 //!
-//! - Ringing: the rule turns the phase of an oscillation by 2 atan(w h/2) instead of w h; with an
-//!   inertia that is less by as much as the tendon is taut, it turns it by w h on a taut tendon,
-//!   and neither loses nor gains energy.
-//! - Damping: the midpoint rule would leave velocity that damping has long consumed, to alternate
-//!   for ever. How much of it is left is taken from the slope of FV; see [`decay`].
+//! - Ringing: the midpoint rule advances the phase of an oscillation by 2 atan(w h/2) instead of
+//!   w h. Inertia is reduced in proportion to the tautness of the tendon, so that on a taut tendon
+//!   the phase advances by w h; the energy of the oscillation is conserved.
+//! - Damping: with strong damping, the midpoint rule alone makes the velocity error alternate in
+//!   sign instead of decaying. [`decay`] corrects this.
 
-use super::abreast::{sum, zip};
 use super::decay;
+use super::elementwise::{sum, zip};
 use crate::checksum::summed;
 use crate::equations::force_velocity::{Branch, VelocityCurve};
 use crate::equations::tendon::Tendon;
@@ -31,17 +31,16 @@ use crate::scalar::float::{square_root, tangent};
 use crate::tick::course::Course;
 use crate::tick::time_step::TimeStep;
 
-/// From here on a tick counts as one of 1 ms, s: no rounding of its length takes it below.
+/// Ticks at least this long have the coarse maximum substep, s: 1 ms less a rounding tolerance.
 const COARSE_TICK: f64 = 0.999e-3;
-/// The greatest w h of a substep: beyond, a muscle that rings would turn by more than half a period
-/// in it, and no inertia could be fitted to that.
+/// Upper bound of w h in a substep. From half a period (pi) on, no inertia gives the right phase.
 const COARSEST_PHASE: f64 = 2.84;
-/// Most of the substeps: only a muscle far from any anatomy asks for more.
+/// Upper bound of the number of substeps; reached only far from human anatomy.
 const MOST_SUBSTEPS: u8 = 40;
-/// w h/2 that inertia is fitted for at most: at pi/2 there would be none left, and from here on
-/// what little is left makes errors after a jerk grow again.
+/// Upper bound of w h/2 in the fit of the inertia. The fitted inertia vanishes at pi/2, and between
+/// this bound and pi/2 errors after a force jump grow again.
 const FASTEST_RINGING: f64 = 1.1;
-/// The mechanics count as settled if no net force at a predicted velocity is more, F0.
+/// Largest residual at a predicted velocity at which the mechanics count as settled, F0.
 const SETTLED: f64 = 0.5;
 /// Lower bound on dF_ce/dV, which is a divisor, F0 s/L_ce0: far below any viscosity.
 const LEAST_STEEPNESS: f64 = 1e-5;
@@ -49,38 +48,37 @@ const LEAST_STEEPNESS: f64 = 1e-5;
 /// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<S> {
-    /// How much longer they have become, as the velocity that would have done it in a tick,
-    /// L_ce0/s.
+    /// Change of length, as the constant velocity that would cause it in one tick, L_ce0/s.
     pub(crate) travel: S,
     /// L_ce0/s.
     pub(crate) velocity: S,
 }
 
-/// What a tick has done to the mechanics.
+/// Result of a tick of the mechanics.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Advanced<S> {
+pub(crate) struct TickResult<S> {
     pub(crate) motion: Motion<S>,
     pub(crate) speed: Speed<S>,
-    /// No substep began far from its balance.
+    /// The residuals of all substeps were within the limit.
     pub(crate) settled: bool,
-    /// A substep held the velocity at the greatest there is.
-    pub(crate) held: bool,
+    /// The velocity of a substep was clamped.
+    pub(crate) velocity_limited: bool,
 }
 
 /// The contractile element during one tick:
-/// F_ce' = max(0, passive + Σ gain_i FV_i), forces in F0; in some modes the passive force is itself
-/// 0 at least.
+/// F_ce' = max(0, passive + Σ gain_i FV_i), forces in F0. Some modes also clamp the passive force
+/// to 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contractile<'a, S: Scalar, const N: usize> {
-    /// What multiplies FV of each type; never negative, but by rounding.
+    /// Factor of FV of each type; negative only by rounding.
     pub(crate) gains: [Course<S>; N],
-    /// The types, of which FV is asked.
+    /// Coefficients of FV of each type.
     pub(crate) fibers: &'a [Fiber<S>; N],
-    /// What FV of each depends on during the tick.
+    /// FV of each type during the tick.
     pub(crate) curves: [VelocityCurve<S>; N],
-    /// Passive force at the length the tick starts with and V = 0.
+    /// Passive force at V = 0 and the length at the start of the tick.
     pub(crate) passive: Course<S>,
-    /// Its slope, F0 per tick at 1 L_ce0/s.
+    /// Slope of the passive force, F0 per tick at 1 L_ce0/s.
     pub(crate) passive_slope: S,
 }
 
@@ -91,16 +89,17 @@ pub(crate) struct Contraction<S: Scalar> {
     /// eta, F0 s/L_ce0.
     viscosity: S,
     substep: Substep<S>,
-    /// How many there are.
+    /// Number of substeps in a tick.
     substeps: u8,
     /// A tick, s.
     tick: S::Part,
     /// Ticks per second.
     tick_rate: S::Factor,
+    /// Largest speed, L_ce0/s.
     speed: S,
-    /// The slowest V_max of the types, L_ce0/s.
+    /// V_max of the slowest type, L_ce0/s.
     slowest: S,
-    /// 1 over the unit of a variance of speeds.
+    /// Reciprocal of the unit of the variance of speed.
     per_spread: S::Part,
     settled: S,
     least_steepness: S,
@@ -111,11 +110,11 @@ summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick,
 /// Coefficients of a substep of a given length.
 #[derive(Clone, Copy, Debug)]
 struct Substep<S: Scalar> {
-    /// Half of it, in ticks.
+    /// Half a substep, in ticks.
     half: S::Part,
     /// Mass over half the substep, F0 s/L_ce0.
     inertia: S,
-    /// How much less that is on a taut tendon.
+    /// Reduction of the inertia on a taut tendon, F0 s/L_ce0.
     fitted: S,
     /// Stiffness of the taut tendon times half the substep, F0 s/L_ce0.
     taut: S,
@@ -128,7 +127,7 @@ impl<S: Scalar> Substep<S> {
     fn new(seconds: f64, step: TimeStep, mass: f64, stiffness: f64) -> Self {
         let half = 0.5 * seconds;
         let inertia = mass / half;
-        // Half the phase that the ringing turns by; tan of it is what the midpoint rule sees.
+        // Half the phase of the ringing in a substep. The midpoint rule gives its tangent.
         let phase = Scalar::min(half * square_root(stiffness / mass), FASTEST_RINGING);
         let share = phase / tangent(phase);
         Self {
@@ -140,29 +139,30 @@ impl<S: Scalar> Substep<S> {
     }
 }
 
-/// Name of a derived quantity that fixed point refuses.
+/// Name, in errors, of a derived quantity with a limit in fixed point.
 pub(crate) const INERTIA: &str = "fascicle_length: inertia in a substep, F0 s/L_ce0";
 
-/// Half the mass of a muscle, F0 s²/L_ce0.
+/// The moving mass, half that of the muscle, F0 s²/L_ce0.
 fn moving_mass<const N: usize>(params: &MuscleParams<N>) -> f64 {
     0.5 * params.mass * params.fascicle_length / params.max_isometric_force()
 }
 
-/// The tendon's stiffness when it is taut, F0/L_ce0.
+/// Stiffness of the taut tendon, F0/L_ce0.
 fn tendon_stiffness<const N: usize>(params: &MuscleParams<N>) -> f64 {
     params.elements.tendon.stiffness * params.fascicle_length / params.tendon_length
 }
 
-/// The largest coefficient of the mechanics of a muscle: its inertia in a substep.
+/// Inertia in a substep, the largest coefficient of the mechanics, F0 s/L_ce0.
 pub(crate) fn largest_inertia<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> f64 {
     let mass = moving_mass(params);
     2.0 * mass * f64::from(substeps(params.class, step, mass, tendon_stiffness(params)))
         / step.seconds()
 }
 
-/// How many substeps a tick has in a class, for a mass (F0 s²/L_ce0) on a tendon (F0/L_ce0).
+/// Number of substeps in a tick, for an accuracy class, a mass (F0 s²/L_ce0) and a tendon stiffness
+/// (F0/L_ce0).
 fn substeps(class: Class, step: TimeStep, mass: f64, stiffness: f64) -> u8 {
-    // In powers which take no root: w² = stiffness/mass and A² = stiffness mass.
+    // Squares avoid roots: w² = stiffness/mass and A² = stiffness mass.
     let square = |x: f64| x * x;
     let (frequency, amplitude) = (stiffness / mass, stiffness * mass);
     let Substeps { longest: (coarse, fine), ringing } = class.substeps();
@@ -178,7 +178,6 @@ fn substeps(class: Class, step: TimeStep, mass: f64, stiffness: f64) -> u8 {
 }
 
 impl<S: Scalar> Contraction<S> {
-    /// The mechanics of a muscle.
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>, step: TimeStep) -> Self {
         let (mass, stiffness) = (moving_mass(params), tendon_stiffness(params));
         let substeps = substeps(params.class, step, mass, stiffness);
@@ -199,23 +198,23 @@ impl<S: Scalar> Contraction<S> {
         }
     }
 
-    /// What the fascicles have travelled, L_ce0, by a travel in L_ce0/s and ticks.
+    /// Change of length (L_ce0) at a velocity (L_ce0/s) constant during a tick.
     pub(crate) fn lengthening(&self, travel: S) -> S {
         travel.rounded_portion(self.tick)
     }
 
-    /// One tick from `velocity`, in which the tendon, were the fascicles to stay as they are, would
-    /// go linearly through `extension` (L_ce0 beyond slack).
+    /// Integrates one tick, starting with `velocity`. `extension` is that of the tendon at constant
+    /// fascicle length (L_ce0 beyond slack), linear during the tick.
     ///
-    /// The tendon's extension, not the fascicles' length, carries the state: near slack it is a
-    /// small number, and in `f32` a slow motion is not lost in the rounding of a large one.
+    /// The state is the extension of the tendon, not the length of the fascicles: extensions are
+    /// small near slack, so that in `f32` slow motion is not lost to rounding.
     #[inline(always)]
     pub(crate) fn advance<R: RecruitmentTick<S, N>, const N: usize>(
         &self,
         velocity: S,
         extension: Course<S>,
         contractile: &Contractile<'_, S, N>,
-    ) -> Advanced<S> {
+    ) -> TickResult<S> {
         let tick = Tick {
             contraction: self,
             contractile,
@@ -224,36 +223,37 @@ impl<S: Scalar> Contraction<S> {
             elastic: contractile.passive_slope.portion(self.substep.half),
         };
         let mut motion = Motion { travel: S::ZERO, velocity };
-        // Time since the tick's middle, in ticks.
+        // Time since mid-tick, in ticks.
         let mut time = S::MINUS_HALF + self.substep.half;
-        let (mut worst, mut held) = (S::ZERO, false);
+        let (mut largest_residual, mut velocity_limited) = (S::ZERO, false);
         let (mut mean, mut square) = (S::ZERO, S::ZERO);
         for _ in 0..self.substeps {
-            let substep = tick.substep::<R>(&mut motion, time, &mut held);
-            worst = worst.max(substep.balance.abs());
-            mean = mean + substep.step;
-            square = square + substep.step * substep.speed.portion(self.per_spread);
+            let substep = tick.substep::<R>(&mut motion, time, &mut velocity_limited);
+            largest_residual = largest_residual.max(substep.residual.abs());
+            mean = mean + substep.distance;
+            square = square + substep.distance * substep.speed.portion(self.per_spread);
             time = time + self.substep.half + self.substep.half;
         }
-        Advanced {
+        TickResult {
             motion,
             speed: Speed {
                 mean,
                 variance: (square - mean * mean.portion(self.per_spread)).max(S::ZERO),
             },
-            settled: worst <= self.settled,
-            held,
+            settled: largest_residual <= self.settled,
+            velocity_limited,
         }
     }
 }
 
-/// What a substep has been like.
-struct Passed<S> {
-    /// How far the forces were from balance at the predicted velocity, F0.
-    balance: S,
-    /// The magnitude of its mean velocity, L_ce0/s, and that times its share of the tick.
+/// Result of a substep.
+struct SubstepResult<S> {
+    /// Residual of the force balance at the predicted velocity, F0.
+    residual: S,
+    /// Magnitude of the mean velocity, L_ce0/s.
     speed: S,
-    step: S,
+    /// Magnitude of the change of length, as a velocity times ticks, L_ce0/s.
+    distance: S,
 }
 
 /// One tick of the mechanics.
@@ -261,32 +261,32 @@ struct Tick<'a, S: Scalar, const N: usize> {
     contraction: &'a Contraction<S>,
     contractile: &'a Contractile<'a, S, N>,
     extension: Course<S>,
-    /// L_ce0/s.
+    /// Velocity of the path, L_ce0/s.
     path_speed: S,
-    /// The passive elements' stiffness times half the substep, F0 s/L_ce0.
+    /// Stiffness of the passive elements times half the substep, F0 s/L_ce0.
     elastic: S,
 }
 
 impl<S: Scalar, const N: usize> Tick<'_, S, N> {
-    /// One substep about `time`, which starts with `motion` and leaves it as it is at the end.
+    /// Integrates one substep with its middle at `time`; advances `motion` from start to end.
     #[inline(always)]
     fn substep<R: RecruitmentTick<S, N>>(
         &self,
         motion: &mut Motion<S>,
         time: S::Part,
-        held: &mut bool,
-    ) -> Passed<S> {
+        velocity_limited: &mut bool,
+    ) -> SubstepResult<S> {
         let (c, element) = (self.contraction, self.contractile);
         let substep = &c.substep;
         let (start, half) = (motion.velocity, substep.half);
 
-        // The tendon where it would be at the velocity foreseen, and as straight as it is there.
-        let foreseen = motion.travel + start.portion(half);
+        // Tendon force and stiffness at the predicted mid-substep length.
+        let predicted_travel = motion.travel + start.portion(half);
         let extension = self.extension.at(time);
-        let pull = c.tendon.pull(extension - c.lengthening(foreseen));
+        let pull = c.tendon.pull(extension - c.lengthening(predicted_travel));
         let stiffness = substep.taut.by(pull.tautness);
         let inertia = substep.inertia - substep.fitted.by(pull.tautness);
-        // What does not depend on velocity: inertia (V - start) - F_se is this and a slope times V.
+        // inertia (V - start) - F_se = constant + slope V.
         let slope = inertia + stiffness;
         let momentum = slope * start;
         let constant = -(momentum + pull.force);
@@ -295,10 +295,11 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         let passive = element.passive.at(time) + element.passive_slope * motion.travel;
         let mut elastic = self.elastic;
 
-        // The sign of the net force at V = 0 is that of the velocity.
+        // The FV branch is chosen by the sign of the net force at V = 0, which is that of the
+        // velocity. A predicted velocity of the other sign is replaced by 0.
         let mut filaments = sum(&gains);
-        let at_rest = least::<S, R, N>(passive) + filaments;
-        let lengthening = (at_rest.of_sign(false) + constant).is_negative();
+        let isometric = passive_force::<S, R, N>(passive) + filaments;
+        let lengthening = (isometric.of_sign(false) + constant).is_negative();
         let velocity = start.of_sign(!lengthening);
 
         let mut branches = zip(element.fibers, &element.curves, |fiber, curve| {
@@ -318,14 +319,14 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
             velocity.reciprocals_of_one_plus(branches.each_ref().map(|branch| branch.denominator));
         let curves = zip(&branches, &reciprocals, |branch, reciprocal| branch.at(*reciprocal));
 
-        // F_ce', what it gains with velocity and time, at that velocity.
+        // F_ce' at the predicted velocity, its slopes, and its change in a tick.
         let mut viscosity = c.viscosity;
         let mut force = passive + (viscosity + elastic) * velocity;
         let mut rise = element.passive.change;
         if R::PASSIVE_ONLY_PULLS && force.is_negative() {
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
-        // gain FV = gain + secant V of each type, and the change of that.
+        // gain FV = gain + secant V of each type, and its change in a tick.
         let secants = zip(&gains, &curves, |gain, fv| *gain * fv.secant);
         let slopes = zip(&secants, &curves, |secant, fv| *secant * fv.reciprocal);
         let changes = element.gains.map(|gain| gain.change);
@@ -340,32 +341,32 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
             (steepness, half_curvature) = (S::ZERO, S::ZERO);
         }
 
-        let balance = constant + slope * velocity + force;
+        let residual = constant + slope * velocity + force;
         let line = slope + (viscosity + elastic);
         let steepness = steepness.max(c.least_steepness);
-        let balanced = balance.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
-        let mut middle = (velocity + balanced.root).of_sign(!lengthening);
-        let usual = middle.abs() < c.speed;
-        if !usual {
+        let balance = residual.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
+        let mut middle = (velocity + balance.root).of_sign(!lengthening);
+        let in_range = middle.abs() < c.speed;
+        if !in_range {
             cold_path();
             middle = if lengthening { c.speed } else { -c.speed };
-            *held = true;
+            *velocity_limited = true;
         }
 
-        // What pulls at the fascicles ever more, though velocity stay: F0 in half the substep.
-        let growing =
+        // Change of net force per half-substep at constant velocity.
+        let force_change =
             stiffness * (self.path_speed - middle) - elastic * middle - rise.portion(half);
-        let left = decay::left(&balanced, middle - start, growing);
-        let mean = middle + left.mean;
+        let offsets = decay::offsets(&balance, middle - start, force_change);
+        let mean = middle + offsets.mean;
         let half_step = mean.portion(half);
         let step = half_step + half_step;
-        *motion = Motion { travel: motion.travel + step, velocity: middle + left.end };
-        Passed { balance, step: step.abs(), speed: mean.abs() }
+        *motion = Motion { travel: motion.travel + step, velocity: middle + offsets.end };
+        SubstepResult { residual, speed: mean.abs(), distance: step.abs() }
     }
 }
 
-/// The passive force as the mode takes it.
-fn least<S: Scalar, R: RecruitmentTick<S, N>, const N: usize>(passive: S) -> S {
+/// The passive force; clamped to 0 if the mode says so.
+fn passive_force<S: Scalar, R: RecruitmentTick<S, N>, const N: usize>(passive: S) -> S {
     if R::PASSIVE_ONLY_PULLS { passive.of_sign(false) } else { passive }
 }
 
@@ -375,18 +376,18 @@ mod tests {
     use crate::params::presets::PAPER_MUSCLE;
 
     #[test]
-    fn a_taut_tendon_rings_at_its_own_phase() {
+    fn on_a_taut_tendon_a_substep_advances_the_phase_by_w_h() {
         let (mass, stiffness) = (2.0e-5, 153.0);
         let substep = Substep::<f64>::new(0.25e-3, TimeStep::MILLISECOND, mass, stiffness);
         let half = 0.125e-3;
         let inertia = substep.inertia - substep.fitted;
-        // The midpoint rule turns the phase by 2 atan(h/2 sqrt(stiffness/mass)).
+        // The midpoint rule advances the phase by 2 atan(h/2 sqrt(stiffness/mass)).
         let found = (stiffness * half / inertia).sqrt().atan();
         assert!((found - half * (stiffness / mass).sqrt()).abs() < 1e-12, "{found}");
     }
 
     #[test]
-    fn a_class_sets_the_substeps_of_a_tick() {
+    fn number_of_substeps_by_class_and_tick() {
         let count = |class, milliseconds: f64| {
             let step = TimeStep::from_seconds(milliseconds * 1e-3).unwrap();
             let muscle = MuscleParams { class, ..PAPER_MUSCLE };
@@ -395,8 +396,7 @@ mod tests {
         let counts = [0.1, 0.5, 1.0, 2.0]
             .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
         assert_eq!(counts, [[1, 1, 1], [1, 4, 5], [1, 4, 10], [2, 8, 20]]);
-        // A tendon that is so short that the muscle would ring by more than half a period in a
-        // tick.
+        // On a tendon this short the muscle would ring by more than half a period in a tick.
         let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });
         let mass = moving_mass(&PAPER_MUSCLE);
         assert_eq!(substeps(Class::Economy, TimeStep::MILLISECOND, mass, short), 2);

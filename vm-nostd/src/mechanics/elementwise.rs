@@ -1,9 +1,9 @@
-//! Operations on values of all fibre types, statement by statement rather than type by type: the
-//! results of one type are not waited for while those of another are computed.
+//! Element-wise operations on arrays with one value per fibre type. Computing each step for all
+//! types before the next step keeps the pipeline busy: the types do not depend on each other.
 
 use crate::scalar::Scalar;
 
-/// What a function makes of two things of each type.
+/// Applies a function to the two values of each type.
 #[inline(always)]
 pub(super) fn zip<A, B, T, const N: usize>(
     first: &[A; N],
