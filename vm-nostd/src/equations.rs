@@ -1,4 +1,4 @@
-//! The equations of the paper, one a file.
+//! The equations of the paper, one per file.
 
 pub(crate) mod activation_frequency;
 pub(crate) mod excitation;

@@ -75,11 +75,11 @@ impl<S: Scalar, const N: usize> SteadyNatural<S, N> {
         let compression = m.compression.at(length).0;
         let pull = |activation: S| {
             let mut sum = parallel;
-            let held = m.recruitment.held(activation);
+            let steady = m.recruitment.steady(activation);
             for ((((weight, frequency), curve), overlap), fiber) in
-                held.into_iter().zip(&curves).zip(&overlaps).zip(&m.fibers)
+                steady.into_iter().zip(&curves).zip(&overlaps).zip(&m.fibers)
             {
-                let sag = m.recruitment.held_sag(fiber, frequency);
+                let sag = m.recruitment.steady_sag(fiber, frequency);
                 sum = sum + weight * curve.at(frequency * sag) * (*overlap + compression);
             }
             sum

@@ -90,7 +90,7 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
         let mut active = S::ZERO;
         for i in 0..N {
             if activities[i] > least {
-                let moved = curves[i].moved(activities[i], &others[i]);
+                let moved = curves[i].at_other_length(activities[i], &others[i]);
                 let weight = shares[i].ratio(activities[i]);
                 active = active + weight * moved * longer[i];
             }

@@ -21,7 +21,7 @@ pub struct ActivationParams {
     pub length_dependence: f64,
 }
 
-/// The smallest n_f used: below, Af loses its meaning, and at 0 it is undefined.
+/// Lower bound of n_f: below it Af has no physiological meaning, and at 0 Af is undefined.
 const LEAST_EXPONENT: f64 = 0.2;
 
 impl ActivationParams {
@@ -31,7 +31,7 @@ impl ActivationParams {
         within("activation.length_dependence", self.length_dependence, 0.0, 20.0)
     }
 
-    /// Refuses exponents that the arithmetic cannot hold at the shortest fascicle length.
+    /// Refuses exponents that the arithmetic cannot represent at the shortest fascicle length.
     pub(crate) fn validate_magnitudes(
         &self,
         shortest: f64,
@@ -45,7 +45,7 @@ impl ActivationParams {
     /// The longest fascicle length, in L_ce0 and not above `most`, at which n_f is still defined.
     pub(crate) fn longest_length(&self, most: f64) -> f64 {
         let reciprocal = 1.0 + (LEAST_EXPONENT - self.exponent) / self.length_dependence;
-        // Without dependence on length the reciprocal is minus infinity: no limit.
+        // If n_f1 is 0, the reciprocal is minus infinity: no limit.
         if reciprocal > 1.0 / most { 1.0 / reciprocal } else { most }
     }
 }
@@ -60,7 +60,7 @@ pub(crate) struct ActivationFrequency<S> {
 
 summed!([S: Scalar] ActivationFrequency<S> { exponent, scale });
 
-/// Af at one fascicle length, ready for any frequency.
+/// Af as a function of frequency at one fascicle length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActivationCurve<S> {
     exponent: S,
@@ -79,14 +79,14 @@ impl<S: Scalar> ActivationFrequency<S> {
         }
     }
 
-    /// n_f at the fascicle length whose reciprocal is given.
+    /// n_f, given 1/L.
     pub(crate) fn exponent(&self, reciprocal: S) -> S {
         let [constant, slope] = self.exponent;
         constant + slope * reciprocal
     }
 }
 
-/// Af of all types at one fascicle length, ready for any frequencies.
+/// Af as a function of frequency at one fascicle length, for all types.
 #[inline(always)]
 pub(crate) fn curves<S: Scalar, const N: usize>(
     types: [&ActivationFrequency<S>; N],
@@ -106,15 +106,15 @@ impl<S: Scalar> ActivationCurve<S> {
         if frequency > S::ZERO { activation } else { S::ZERO }
     }
 
-    /// Af at another length, at the frequency that makes it `value` here:
+    /// Af at the length of `other`, at the frequency at which Af is `activation` at this length:
     /// x' = n_f' (x/n_f - ln(n_f'/n_f)) with x = ln(-ln(1 - Af)).
-    pub(crate) fn moved(&self, value: S, to: &Self) -> S {
-        if value <= S::ZERO {
+    pub(crate) fn at_other_length(&self, activation: S, other: &Self) -> S {
+        if activation <= S::ZERO {
             return S::ZERO;
         }
-        let left = (S::ONE - value).max(S::LEAST);
-        let x = (-left.ln()).max(S::LEAST).ln();
-        let ratio = to.exponent.ratio(self.exponent);
-        (x * ratio - to.exponent * ratio.ln()).weibull()
+        let inactive = (S::ONE - activation).max(S::LEAST);
+        let x = (-inactive.ln()).max(S::LEAST).ln();
+        let ratio = other.exponent.ratio(self.exponent);
+        (x * ratio - other.exponent * ratio.ln()).weibull()
     }
 }

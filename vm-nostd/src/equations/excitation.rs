@@ -40,9 +40,9 @@ impl ExcitationParams {
 /// The two lags of one fibre type.
 #[derive(Clone, Copy, Debug)]
 pub struct Excitation<S: Scalar> {
-    /// A tick in the unit of the time constants, which is a power of two of ticks.
+    /// A tick, in the unit of the time constants, which is 2^k ticks.
     tick: S,
-    // Time constants in that unit.
+    // Time constants, in that unit.
     rise: S,
     rise_per_frequency: S,
     fall: S,
@@ -67,8 +67,8 @@ pub(crate) struct Excited<S: Scalar> {
 const LONGEST_FASCICLE: f64 = 2.0;
 const SHORTEST_FASCICLE: f64 = 0.4;
 const HIGHEST_FREQUENCY: f64 = 100.0;
-/// Greatest time constant, in its unit.
-const ROOM: f64 = 100.0;
+/// Upper bound of a time constant, in its unit.
+const LARGEST_TIME_CONSTANT: f64 = 100.0;
 
 impl<S: Scalar> Excitation<S> {
     pub(crate) fn new(params: &ExcitationParams, step: TimeStep) -> Self {
@@ -76,7 +76,7 @@ impl<S: Scalar> Excitation<S> {
             + params.rise_per_frequency * HIGHEST_FREQUENCY
             + (params.fall + params.fall_per_activation) / SHORTEST_FASCICLE;
         let mut unit = step.seconds();
-        while longest > ROOM * unit {
+        while longest > LARGEST_TIME_CONSTANT * unit {
             unit *= 2.0;
         }
         Self {
@@ -89,29 +89,31 @@ impl<S: Scalar> Excitation<S> {
     }
 }
 
-/// What drives the lags of a type in a tick, in f0.5, and where they start from.
+/// Inputs and initial state of the two lags of a type in a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Driven<'a, S: Scalar> {
+pub(crate) struct ExcitationInput<'a, S: Scalar> {
     pub(crate) excitation: &'a Excitation<S>,
-    /// f_int and f_eff at the tick's start.
+    /// f_int at the start of the tick.
     pub(crate) intermediate: S::LagState,
+    /// f_eff at the start of the tick.
     pub(crate) effective: S::LagState,
-    /// What f_int tends to.
+    /// Target of f_int, f0.5.
     pub(crate) drive: S,
-    /// f_env at mid-tick.
+    /// f_env at mid-tick, f0.5.
     pub(crate) frequency: S,
-    /// The factor of Tf4 at mid-tick.
+    /// Factor of Tf4 at mid-tick, 0..1.
     pub(crate) slowing: S,
 }
 
-/// One tick of the lags of types, side by side.
+/// Advances the lags of several types by one tick, side by side.
 ///
-/// The fascicle's `length` is a mid-tick value, and `reciprocal` is 1/length, clamped to the
-/// validity range of the filaments' equations. In the variable x = ∫dt/Tf the two lags are linear
-/// and solved exactly; if f_int and f_eff cross within the tick, x is the sum of both parts.
+/// `length` is the mid-tick fascicle length; `reciprocal` is 1/length with the length clamped to
+/// the validity range of the filaments' equations. As functions of x = ∫dt/Tf the two lags are
+/// linear and are solved exactly. If f_int and f_eff cross within the tick, x is the sum of the
+/// parts before and after the crossing.
 #[inline(always)]
 pub(crate) fn advance<S: Scalar, const N: usize>(
-    types: [Driven<'_, S>; N],
+    types: [ExcitationInput<'_, S>; N],
     length: S,
     reciprocal: S,
 ) -> [Excited<S>; N] {
@@ -125,24 +127,24 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
     let lead = types.each_ref().map(|t| S::of(t.intermediate) - S::of(t.effective));
     let excess = types.each_ref().map(|t| S::of(t.intermediate) - t.drive);
     let rises: [bool; N] = from_fn(|i| {
-        // Where f_int and f_eff are equal, the next moment tells.
+        // If f_int = f_eff, the sign of the derivative of f_int - f_eff decides.
         lead[i] > S::ZERO || lead[i] == S::ZERO && excess[i] <= S::ZERO
     });
-    let now: [S; N] = from_fn(|i| if rises[i] { rising[i] } else { falling[i] });
-    let mut x = S::ratios(types.each_ref().map(|t| t.excitation.tick), now);
+    let time_constants: [S; N] = from_fn(|i| if rises[i] { rising[i] } else { falling[i] });
+    let mut x = S::ratios(types.each_ref().map(|t| t.excitation.tick), time_constants);
     for i in 0..N {
-        // f_int - f_eff = (lead - excess x) exp(-x) changes sign at x = lead/excess. x grows at one
-        // rate until then, and at the other for the rest of the tick.
+        // f_int - f_eff = (lead - excess x) exp(-x) changes sign at x = lead/excess. Before that
+        // x grows with one time constant, after it with the other.
         let tick = types[i].excitation.tick;
-        if (lead[i] * now[i]).is_between_0_and(excess[i] * tick) {
+        if (lead[i] * time_constants[i]).is_between_0_and(excess[i] * tick) {
             cold_path();
             let before = lead[i].abs().ratio(excess[i].abs());
-            let then = if rises[i] { falling[i] } else { rising[i] };
-            x[i] = before + (tick - before * now[i]).ratio(then);
+            let other = if rises[i] { falling[i] } else { rising[i] };
+            x[i] = before + (tick - before * time_constants[i]).ratio(other);
         }
     }
 
-    // A loop, because closures over arrays are called.
+    // A loop: a closure mapped over the array would not be inlined.
     let none = Lags { response: S::share(0.0), delayed: S::share(0.0) };
     let mut lags = [[none; 2]; N];
     for (lags, x) in lags.iter_mut().zip(x) {

@@ -33,8 +33,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Terms of the polynomial: FL is within 2e-6 for published types, within 1.2e-4 for all valid
-/// ones.
+/// Number of terms of the polynomial. The error of FL is below 2e-6 for published types and below
+/// 1.2e-4 for all valid ones.
 const TERMS: usize = 8;
 /// Chebyshev nodes in -1..1: cos((2 k + 1) π/16).
 const NODES: [f64; TERMS] = [
@@ -77,7 +77,7 @@ impl ForceLengthParams {
     /// rho ln((L^beta - 1)/((L - 1) omega)) at a length.
     fn smooth_at(&self, length: f64) -> f64 {
         let logarithm = Scalar::ln(length);
-        // |L^x - 1| without the factor L^x that it has above 1.
+        // |L^x - 1|; for L > 1 divided by L^x.
         let distance = |exponent: f64| one_minus_exp(exponent * logarithm.abs());
         let ratio =
             if logarithm == 0.0 { self.skewness } else { distance(self.skewness) / distance(1.0) };
@@ -86,8 +86,8 @@ impl ForceLengthParams {
     }
 }
 
-/// Least distance |L - 1| at which FL is evaluated, L_ce0: the slope of |L - 1|^rho has a cusp
-/// at 0. FL is 1 within 1e-4 there, within 2e-9 for the paper's types.
+/// Lower bound of |L - 1| in FL, L_ce0: at 0 its logarithm diverges and the slope of |L - 1|^rho
+/// has a cusp. At this bound FL is within 1e-4 of 1, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
 /// The optimal length, 1 L_ce0.
@@ -112,7 +112,7 @@ impl<S: Scalar> OptimalLength<S> {
         Self { nearest: S::from_f64(NEAREST) }
     }
 
-    /// For fascicles of a length (L_ce0).
+    /// Distance of a fascicle length (L_ce0) from the optimal length.
     pub(crate) fn distance(&self, fascicle_length: S) -> Distance<S> {
         let offset = fascicle_length - S::ONE;
         Distance { offset, logarithm: offset.abs().max(self.nearest).ln() }
@@ -158,7 +158,7 @@ pub(crate) mod tests {
     use crate::scalar::fixed::Fixed;
     use crate::{ContinuousMuscle, Input, TimeStep};
 
-    /// FL of a type at any length.
+    /// FL of a type as a function of length.
     pub(crate) fn force_length<S: Scalar>(params: &ForceLengthParams) -> impl Fn(S) -> S {
         let (optimal, relation) = (OptimalLength::new(), ForceLength::new(params, FASCICLE_DOMAIN));
         move |length| {
@@ -172,7 +172,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn at_the_optimal_length_it_is_1() {
+    fn fl_is_1_at_the_optimal_length() {
         for p in PAPER_MUSCLE.fibers.map(|fiber| fiber.fiber_type.force_length) {
             let (f32, fixed) = (force_length::<f32>(&p), force_length::<Fixed>(&p));
             assert!(papers_force_length(&p, 1.0 + NEAREST) > 1.0 - 2e-9);
@@ -188,7 +188,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn of_any_type_it_is_within_12e5th() {
+    fn the_error_of_any_valid_type_is_below_1_2e_4() {
         for skewness in [0.1, 0.12, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0] {
             for width in [0.1, 0.104, 0.2, 0.5, 1.0, 3.0, 10.0] {
                 for roundness in [1.0, 1.5, 2.0, 3.0, 10.0] {
@@ -203,7 +203,7 @@ pub(crate) mod tests {
                         }
                     }
                     assert!(papers_force_length(&p, 1.0 + NEAREST) > 1.0 - 1e-4, "{p:?}");
-                    // What sums of terms, and of the slope's, may be in fixed point.
+                    // Limit of fixed point for the sum of terms, and of those of the slope.
                     let terms = p.smooth(FASCICLE_DOMAIN).map(f64::abs);
                     let steep =
                         terms.iter().zip(0_u8..).map(|(term, power)| term * f64::from(power));
@@ -213,7 +213,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// An active muscle on a path that starts as it will go on.
+    /// A fully active muscle after 1500 ticks on `path`, as a function that runs one tick to a path
+    /// length and returns force/F0.
     fn active<S: Scalar>(path: f64) -> impl FnMut(f64) -> f64 + Clone {
         let params = PAPER_MUSCLE;
         let muscle = ContinuousMuscle::<S, 2>::build(&params, TimeStep::MILLISECOND).unwrap();
@@ -234,11 +235,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn an_active_muscle_passes_its_optimal_length_without_a_jump() {
+    fn force_is_continuous_at_the_optimal_length() {
         let from = f64::from(0.128_f32);
         let (f32, f64) = (active::<f32>(from), active::<f64>(from));
-        // Strides in small steps: in the middle of some tick of some of them L is 1 to the last
-        // bit.
+        // The strides are so closely spaced that for some of them a mid-tick L is exactly 1.
         for trial in 0..40_000 {
             let (mut f32, mut f64) = (f32.clone(), f64.clone());
             let stride = 1.1e-4 * (1.0 + 1e-5 * f64::from(trial));

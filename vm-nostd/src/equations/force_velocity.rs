@@ -1,4 +1,4 @@
-//! Force-velocity relation of the filaments, hyperbolic on either side of V = 0.
+//! Force-velocity relation of the filaments: a hyperbola for shortening, another for lengthening.
 //!
 //! V <= 0: (Vmax - V)/(Vmax + (cV0 + cV1 L) V);
 //! V > 0: (bV - (aV0 + aV1 L + aV2 L²) V)/(bV + V).
@@ -28,10 +28,10 @@ pub struct ForceVelocityParams {
     pub lengthening_velocity: f64,
 }
 
-/// Least distance of cV0 + cV1 L from -1, below which FV has a pole within |Vmax|.
+/// Lower bound of cV0 + cV1 L + 1. At 0 and below, FV has a pole between V = 0 and Vmax.
 const POLE_MARGIN: f64 = 0.02;
 
-/// Names of derived quantities that are refused.
+/// Names, in errors, of derived quantities.
 const SHORTENING: &str = "force_velocity.shortening: cV0 + cV1 L";
 const LENGTHENING: &str = "force_velocity.lengthening: aV0 + aV1 L + aV2 L²";
 
@@ -84,8 +84,8 @@ impl ForceVelocityParams {
         Ok(())
     }
 
-    /// Refuses coefficients with which force does not rise with velocity somewhere in a range of
-    /// fascicle lengths: the net force at V = 0 would not give the sign of V.
+    /// Refuses coefficients with which FV does not increase monotonically with V over a range of
+    /// fascicle lengths: the sign of the net force at V = 0 would not be that of V.
     pub(crate) fn validate_monotone(&self, least: f64, most: f64) -> Result<(), ParameterError> {
         let [c0, c1] = self.shortening;
         let [a0, a1, a2] = self.lengthening;
@@ -127,11 +127,11 @@ impl<S: Scalar> ForceVelocity<S> {
         }
     }
 
-    /// The curve during a tick with the mid-tick fascicle length (L_ce0), which changes by `travel`
-    /// (L_ce0) across the tick.
+    /// FV during a tick, from the mid-tick fascicle length (L_ce0) and its change `travel` (L_ce0)
+    /// during the tick.
     ///
-    /// The lengthening branch depends on length as much as FL does: constant over the tick, it
-    /// would cause nearly all of the error at 2 ms.
+    /// The lengthening branch depends on length as strongly as FL does. Held constant during the
+    /// tick, it would cause nearly all of the error at 2 ms.
     #[inline(always)]
     pub(crate) fn at(&self, fascicle_length: S, travel: S) -> VelocityCurve<S> {
         let [c0, c1] = self.shortening;
@@ -156,7 +156,7 @@ pub(crate) struct VelocityCurve<S> {
     lengthening: Course<S>,
 }
 
-/// The curves of all types in a tick with a mid-tick fascicle length and its change.
+/// FV of all types during a tick; see [`ForceVelocity::at`].
 #[inline(always)]
 pub(crate) fn curves<S: Scalar, const N: usize>(
     types: [&ForceVelocity<S>; N],
@@ -189,8 +189,8 @@ impl<S: Scalar> ForceVelocity<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// Whether a velocity is at or beyond V_max, where FV is 0, and the paper's expression
-    /// negative.
+    /// Whether a velocity is at or beyond V_max, where FV is clamped to 0; the paper's expression
+    /// is negative there.
     pub(crate) fn is_beyond(&self, velocity: S) -> bool {
         velocity <= self.maximum_velocity
     }
@@ -205,8 +205,8 @@ pub(crate) struct Branch<S> {
     pub(crate) denominator: S,
 }
 
-/// FV at one velocity V of a branch: its value is 1 + secant V, its slope with respect to V secant
-/// times reciprocal, and half its curvature the slope times -bend.
+/// FV at one velocity V: the value is 1 + secant V, the slope dFV/dV is secant reciprocal, and half
+/// the curvature is -bend times the slope.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Value<S> {
     /// (n - d)/(1 + d V).
@@ -225,12 +225,12 @@ impl<S: Scalar> Value<S> {
 }
 
 impl<S: Scalar> Branch<S> {
-    /// A branch that is 0 at a velocity of shortening, as FV is beyond V_max.
+    /// A branch with FV = 0 at a velocity beyond V_max.
     pub(crate) fn beyond(velocity: S) -> Self {
         Self { numerator: (-velocity).reciprocal(), denominator: S::ZERO }
     }
 
-    /// FV of the branch at a velocity V of it, given 1/(1 + d V).
+    /// FV at a velocity V, given 1/(1 + d V).
     #[inline(always)]
     pub(crate) fn at(&self, reciprocal: S) -> Value<S> {
         Value {
@@ -242,7 +242,7 @@ impl<S: Scalar> Branch<S> {
 }
 
 impl<S: Scalar> ForceVelocity<S> {
-    /// FV at a velocity above V_max, as the mechanics take it.
+    /// FV at a velocity above V_max, computed as in the mechanics.
     pub(crate) fn on(&self, curve: &VelocityCurve<S>, time: S::Part, velocity: S) -> Value<S> {
         let branch = self.branch(curve, time, velocity > S::ZERO);
         let [reciprocal] = velocity.reciprocals_of_one_plus([branch.denominator]);
@@ -257,7 +257,7 @@ mod tests {
     use crate::scalar::fixed::Fixed;
 
     #[test]
-    fn beyond_the_greatest_velocity_it_is_0() {
+    fn fv_is_0_beyond_v_max() {
         for fiber in PAPER_MUSCLE.fibers {
             let params = fiber.fiber_type.force_velocity;
             let (least, most) = (params.maximum_velocity, params.maximum_velocity + 0.1);

@@ -17,7 +17,7 @@ pub struct ParallelParams {
     /// Width of the toe region k_1, L_max; 0.01 to 0.3.
     #[doc(alias = "k1")]
     pub toe: f64,
-    /// Length at which it becomes taut L_r1, L_max; 0.8 to 1.5.
+    /// Slack length L_r1, L_max; 0.8 to 1.5.
     #[doc(alias = "Lr1")]
     pub slack_length: f64,
     /// Viscosity eta, F0 s/L_ce0; 0.001 to 1.
@@ -40,8 +40,8 @@ pub struct CompressionParams {
     pub onset_length: f64,
 }
 
-/// The passive force is linear within a tick. Without damping, the energy error of this in a
-/// passive muscle that rings would accumulate.
+/// Lower bound of the viscosity. The passive force is linearised within a tick; while a passive
+/// muscle rings, the energy error of that would accumulate without damping.
 const LEAST_VISCOSITY: f64 = 1e-3;
 
 impl ParallelParams {
@@ -57,7 +57,7 @@ impl ParallelParams {
         self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
     }
 
-    /// The fascicle length, in L_max, at which F_pe1 is `force` (F0, more than 0) at V = 0.
+    /// Fascicle length (L_max) at which F_pe1 is `force` (F0, above 0) at V = 0.
     pub(crate) fn length_at(&self, force: f64) -> f64 {
         self.slack_length + self.toe * softplus_inverse(force / (self.stiffness * self.toe))
     }
@@ -118,7 +118,7 @@ impl<S: Scalar> Parallel<S> {
 
 /// F_pe2, shared by the fibre types and weighted by their activation.
 ///
-/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), whose terms are small.
+/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), so that no term is large.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Compression<S: Scalar> {
     /// |c2|, F0.
@@ -133,7 +133,7 @@ pub(crate) struct Compression<S: Scalar> {
 
 summed!([S: Scalar] Compression<S> { strength, steepness, unit_length, slope });
 
-/// A strength (F0) that counts as zero but has a logarithm.
+/// Lower bound of |c2| in its logarithm, F0; negligible as a force.
 const NO_STRENGTH: f64 = 1e-9;
 
 impl<S: Scalar> Compression<S> {

@@ -34,7 +34,7 @@ impl SagParams {
     }
 }
 
-/// Sag of one fibre type; S stays 1 for a type without it.
+/// Sag of one fibre type; S is 1 for a type without sag.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sag<S: Scalar> {
     pub(crate) resting_level: S,
@@ -62,12 +62,12 @@ impl<S: Scalar> Sag<S> {
         Range { least: a.min(b), most: a.max(b) }
     }
 
-    /// S of a type that has fired, or not, for long.
-    pub(crate) fn held(&self, firing: bool) -> S {
+    /// Steady-state S of a type that fires or is at rest.
+    pub(crate) fn steady(&self, firing: bool) -> S {
         if firing { self.firing_level } else { self.resting_level }
     }
 
-    /// S at the tick's end if the type fired for a `share` (0..1) of the tick.
+    /// S at the end of the tick if the type fired for a `share` (0..1) of the tick.
     pub(crate) fn advance(&self, sag: S::LagState, share: S) -> S::LagState {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;
         self.lag.at_end(sag, target)

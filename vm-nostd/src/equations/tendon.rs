@@ -28,7 +28,7 @@ impl TendonParams {
         within("tendon.slack_length", self.slack_length, 0.5, 1.5)
     }
 
-    /// The tendon length, in L_se0, that carries `force` (F0, more than 0).
+    /// Tendon length (L_se0) at which F_se is `force` (F0, above 0).
     pub(crate) fn length_at(&self, force: f64) -> f64 {
         self.toe * softplus_inverse(force / (self.stiffness * self.toe)) + self.slack_length
     }
@@ -39,12 +39,12 @@ impl TendonParams {
     }
 }
 
-/// ln(exp(x) - 1) for x more than 0, without overflow.
+/// ln(exp(x) - 1) for x above 0, without overflow.
 pub(crate) fn softplus_inverse(x: f64) -> f64 {
     x + Scalar::ln(one_minus_exp(x))
 }
 
-/// Tendon of one muscle. Its extension beyond slack is in L_ce0, like fascicle lengths.
+/// Tendon of one muscle. Extensions beyond slack are in L_ce0, like fascicle lengths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tendon<S: Scalar> {
     /// LrT L_se0: the slack length, m.
@@ -68,13 +68,13 @@ pub(crate) struct Pull<S: Scalar> {
     pub(crate) force: S,
     /// Share of the taut tendon's stiffness, 0..1.
     pub(crate) tautness: S::Unit,
-    /// Decrease per tick of fascicles lengthening at 1 L_ce0/s, F0.
+    /// Decrease of force per tick if the fascicles lengthen at 1 L_ce0/s, F0.
     pub(crate) stiffness: S,
     /// The extension saturated.
     pub(crate) saturated: bool,
 }
 
-/// The extension of a tendon that carries a force: kT (x + ln(1 - exp(-x))), x = F_se/(cT kT).
+/// Inverse of F_se: extension = kT (x + ln(1 - exp(-x))), x = F_se/(cT kT).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TendonInverse<S: Scalar> {
     /// 1/(cT kT), per F0.
@@ -93,7 +93,7 @@ impl<S: Scalar> TendonInverse<S> {
         }
     }
 
-    /// Extension (L_ce0) at a force (F0); for 0, that of the least representable force.
+    /// Extension (L_ce0) at a force (F0), at least the smallest representable force.
     pub(crate) fn extension(&self, force: S) -> S {
         let toes = force.max(S::LEAST).scaled(&self.per_force).max(S::LEAST);
         (toes + (S::ONE - (-toes).exp()).max(S::LEAST).ln()).scaled(&self.toe)
@@ -117,17 +117,18 @@ impl<S: Scalar> Tendon<S> {
         }
     }
 
-    /// Change of extension when the path changes from `before` to `after`.
+    /// Change of extension (L_ce0) at constant fascicle length if the path changes from `before` to
+    /// `after`.
     pub(crate) fn stretch(&self, before: S::PathLength, after: S::PathLength) -> S {
         S::path_difference(after, before, &self.per_path)
     }
 
-    /// Extension that leaves the fascicles `length` (L_ce0) on a path.
+    /// Extension (L_ce0) at a path length and a fascicle length (L_ce0).
     pub(crate) fn extension(&self, path: S::PathLength, length: S) -> S {
         S::path_difference(path, self.slack_path, &self.per_path) - length
     }
 
-    /// Fascicle length (L_ce0) on a path with the tendon at an extension.
+    /// Fascicle length (L_ce0) at a path length and an extension (L_ce0).
     pub(crate) fn fascicle_length(&self, path: S::PathLength, extension: S) -> S {
         S::path_difference(path, self.slack_path, &self.per_path) - extension
     }

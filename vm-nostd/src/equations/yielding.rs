@@ -19,8 +19,8 @@ pub struct YieldParams {
     /// Velocity scale V_Y, L_ce0/s; 0.01 to 100.
     #[doc(alias = "VY")]
     pub velocity: f64,
-    /// Time constant T_Y, s; 0.05 to 10: faster, yield would couple to the velocity within a
-    /// tick.
+    /// Time constant T_Y, s; 0.05 to 10. If it were shorter, yield would couple to the velocity
+    /// within a tick.
     #[doc(alias = "TY")]
     pub time_constant: f64,
 }
@@ -33,16 +33,16 @@ impl YieldParams {
     }
 }
 
-/// The unit of a variance of speeds, (L_ce0/s)²: no square of a speed that fascicles can have is
-/// out of the range of fixed point.
+/// Unit of the variance of speed, (L_ce0/s)², so that squares of all speeds in the state range are
+/// representable in fixed point.
 pub(crate) const SPREAD: f64 = 64.0;
 
 /// Fascicle speed |V| during a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Speed<S> {
-    /// Its mean, L_ce0/s.
+    /// Mean, L_ce0/s.
     pub(crate) mean: S,
-    /// Its variance, [`SPREAD`] (L_ce0/s)²; never negative.
+    /// Variance, [`SPREAD`] (L_ce0/s)²; not negative.
     pub(crate) variance: S,
 }
 
@@ -52,21 +52,21 @@ impl<S: Scalar> Speed<S> {
     pub(crate) fn restored<I: Iterator<Item = S::Bits>>(
         saved: &mut Saved<I>,
     ) -> Result<Self, RestoreError> {
-        // The mean of a substep may be beyond the greatest speed, which is that of its middle, by a
-        // few percent; a variance is less than the square of that.
+        // MAXIMUM_SPEED bounds the mid-substep speed. The mean can be higher by a few percent, and
+        // the variance is below the square of the mean's bound.
         let range = Range::new((0.0, 2.0 * MAXIMUM_SPEED), S::from_f64);
         let mut number = || saved.number(|value| range.contains(value));
         Ok(Self { mean: number()?, variance: number()? })
     }
 }
 
-/// Yield of one fibre type; Y stays 1 for a type without it.
+/// Yield of one fibre type; Y is 1 for a type without yield.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Yielding<S: Scalar> {
     depth: S,
     /// 1/VY.
     per_velocity: S::Factor,
-    /// Half the unit of a variance of speeds over VY².
+    /// Half the unit of the variance of speed, over VY².
     per_spread: S::Factor,
     lag: Lag<S>,
 }
@@ -85,16 +85,16 @@ impl<S: Scalar> Yielding<S> {
         }
     }
 
-    /// Where Y always is.
+    /// Range of Y.
     pub(crate) fn range(&self) -> Range<S> {
         Range { least: S::ONE - self.depth, most: S::ONE }
     }
 
-    /// Y at a tick's end, by the fascicle speed during that tick.
+    /// Y at the end of a tick, from the fascicle speed during that tick.
     ///
-    /// The mean of exp(-|V|/VY) over the tick is exp(-mean/VY) (1 + variance/(2 VY²)) to second
-    /// order. A velocity taken at the tick's boundary would be biased: inputs that step every tick
-    /// make it ripple in step with them.
+    /// To second order, the mean of exp(-|V|/VY) over the tick is
+    /// exp(-mean/VY) (1 + variance/(2 VY²)). The tick-boundary velocity would give a biased mean:
+    /// with inputs that step every tick, it ripples at the tick rate.
     #[inline(always)]
     pub(crate) fn advance(&self, yielding: S::LagState, speed: &Speed<S>) -> S::LagState {
         if self.depth == S::ZERO {

@@ -16,8 +16,8 @@ use core::fmt::Debug;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FascicleLength;
 
-/// Af depends on the effective length, which follows the fascicle length more slowly the less
-/// active a unit is.
+/// Af depends on the effective length, which lags the fascicle length; the lag is longer the less
+/// active the unit is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EffectiveLength;
 
@@ -72,14 +72,13 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
     }
 }
 
-/// Lower bound of 1 - Af: near Af = 1, n_f has hardly any effect on Af.
+/// Lower bound of 1 - Af, a divisor. Near Af = 1, n_f has hardly any effect on Af.
 const LEAST_INACTIVE: f64 = 1e-4;
 
 /// Coefficients of the effective length.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectiveLengthCoefficients<S: Scalar> {
-    /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, with the distance
-    /// x = L - L_eff.
+    /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, x = L - L_eff.
     rate: S,
     least_inactive: S,
     /// Range of L_eff, in which n_f is defined.
@@ -117,8 +116,8 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         saved.lag_state(&coefficients.range)
     }
 
-    /// The distance x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half of the
-    /// tick L is held at its value in the middle of that half; the rest is exact:
+    /// x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half-tick L is held constant
+    /// at its value in the middle of the half; the equation is then solved exactly:
     /// x → x/√(1 + 2 x² t/τ).
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
@@ -129,7 +128,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         let before = S::of(*state);
         let inactive = (S::ONE - activation).max(coefficients.least_inactive);
         let quarter = moment.travel.half().half();
-        // Distance to a length, and the share 1 - 1/√grown of it that is covered, as in a lag.
+        // x at the start of a half-tick, and the share 1 - 1/√grown by which it decreases.
         let step = |length: S, from: S| {
             let distance = coefficients.range.clip(length).0 - from;
             let grown = S::ONE + (distance * distance * coefficients.rate).ratio(inactive);

@@ -1,14 +1,14 @@
 //! Natural continuous recruitment: one lumped unit per fibre type.
 //!
-//! Uth_1 = 0.001, Uth_i = U_r × cross section of the types before;
+//! Uth_1 = 0.001, Uth_i = U_r × cross section of types 1 to i - 1;
 //! dU_eff/dt = (U - U_eff)/T_U, T_U = 0.03 s rising, 0.15 s falling;
 //! W_i = (U_eff - Uth_i)/Σ (U_eff - Uth_k), over all recruited types.
 //!
-//! The paper prints the sum only up to i; its own results, and its authors' program, sum over all
-//! recruited types, so that the weights add to 1.
+//! In the paper's equation the sum ends at i. The paper's results and the authors' program sum over
+//! all recruited types, so that the weights add up to 1.
 
 use super::firing::Firing;
-use super::lumped::{self, Advanced, Lumped, LumpedState};
+use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
 use crate::checksum::summed;
 use crate::equations::sag::SagParams;
@@ -45,7 +45,7 @@ const FALL_TIME: f64 = 0.15;
 pub struct Coefficients<S: Scalar, const N: usize> {
     rise: Lag<S>,
     fall: Lag<S>,
-    /// The frequency from which a type counts as firing, f0.5.
+    /// Frequency above which a type counts as firing, f0.5.
     firing: S,
     units: [Firing<S>; N],
 }
@@ -53,8 +53,8 @@ pub struct Coefficients<S: Scalar, const N: usize> {
 summed!([S: Scalar, const N: usize] Coefficients<S, N> { rise, fall, firing, units });
 
 impl<S: Scalar, const N: usize> Coefficients<S, N> {
-    /// Weight U_eff W_i and firing frequency (f0.5) of each type at an activation held for long.
-    pub(crate) fn held(&self, activation: S) -> [(S, S); N] {
+    /// Steady-state weight U_eff W_i and firing frequency (f0.5) of each type at an activation.
+    pub(crate) fn steady(&self, activation: S) -> [(S, S); N] {
         let above = |unit: &Firing<S>| (activation - unit.threshold).max(S::ZERO);
         let sum = self.units.iter().fold(S::ZERO, |sum, unit| sum + above(unit));
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
@@ -63,9 +63,9 @@ impl<S: Scalar, const N: usize> Coefficients<S, N> {
             .map(|unit| (activation * above(unit).scaled(&per_sum), unit.frequency(activation)))
     }
 
-    /// S of a type that fires at a frequency (f0.5) for long.
-    pub(crate) fn held_sag(&self, fiber: &Fiber<S>, frequency: S) -> S {
-        fiber.sag.held(frequency > self.firing)
+    /// Steady-state S of a type that fires at a frequency (f0.5).
+    pub(crate) fn steady_sag(&self, fiber: &Fiber<S>, frequency: S) -> S {
+        fiber.sag.steady(frequency > self.firing)
     }
 }
 
@@ -122,34 +122,34 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     ) -> [Recruited<S>; N] {
         let activation = moment.input.activation;
         let start = state.shared;
-        // U is constant in a tick, and U_eff only tends to it: the branch cannot change within.
+        // U is constant during a tick and U_eff does not overshoot it: one branch per tick.
         let lag = if activation >= S::of(start) { &self.rise } else { &self.fall };
         let middle = lag.at_middle(start, activation);
         state.shared = lag.at_end(start, activation);
 
         let excesses = self.units.each_ref().map(|unit| (middle - unit.threshold).of_sign(false));
         let sum = excesses.into_iter().fold(S::ZERO, |sum, excess| sum + excess);
-        // Where there is nothing to share, any divisor will do.
+        // If no type is recruited, all excesses are 0: any divisor will do.
         let per_sum = if sum > S::ZERO { sum } else { S::ONE }.reciprocal_factor();
-        // U_eff W.
+        // U_eff W_i.
         let mut weights = excesses;
         for weight in &mut weights {
             *weight = middle * weight.scaled(&per_sum);
         }
 
         let drives = self.units.each_ref().map(|unit| unit.frequency(activation));
-        let described = |i: usize, kept| Lumped {
+        let input = |i: usize, fiber_state| LumpedInput {
             fiber: &fibers[i],
-            kept,
+            state: fiber_state,
             drive: drives[i],
             frequency: drives[i],
             slowing: state.activities[i].predicted,
             yielding: moment.yieldings[i],
         };
         let advanced =
-            lumped::advance_all::<S, false, N>(&mut state.fibers, described, moment, self.firing);
+            lumped::advance_all::<S, false, N>(&mut state.fibers, input, moment, self.firing);
         from_fn(|i| {
-            let Advanced { activation, .. } = advanced[i];
+            let LumpedOutput { activation, .. } = advanced[i];
             state.activities[i] = state.activities[i].next(activation);
             let weight = weights[i];
             Recruited { activation, weight, change_after_jump: None, compression_weight: weight }

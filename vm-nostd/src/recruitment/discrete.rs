@@ -1,6 +1,6 @@
-//! Natural discrete recruitment: motor units one by one.
+//! Natural discrete recruitment: individual motor units.
 //!
-//! Uth_j = max(0.001, U_r × cross section up to and with unit j), types in order of rank;
+//! Uth_j = max(0.001, U_r × cross section of units 1 to j), types in order of rank;
 //! f_env_j rises linearly with U from fmin at Uth_j to fmax at U = 1;
 //! each unit has its own f_int, f_eff and S; active force Σ pcsa_j Af_j (FL FV + F_pe2).
 
@@ -8,10 +8,10 @@ use super::acting_length::ActingLength;
 use super::firing::Firing;
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick};
 use super::motor_units::MotorUnits;
-use super::unit::{Activity, sagged};
+use super::unit::{Activity, advance_sag};
 use crate::checksum::{Summed, summed};
 use crate::equations::activation_frequency;
-use crate::equations::excitation::{self, Driven};
+use crate::equations::excitation::{self, ExcitationInput};
 use crate::equations::sag::{SagParams, share_above};
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
@@ -41,10 +41,10 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 
 #[derive(Clone, Copy, Debug)]
 pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
-    /// The frequency from which a unit counts as firing, f0.5.
+    /// Frequency above which a unit counts as firing, f0.5.
     firing: S,
     units: [Unit<S, A::Coefficients>; UNITS],
-    /// How many of them there are.
+    /// Number of units.
     count: usize,
 }
 
@@ -54,7 +54,7 @@ summed!([S: Scalar, A: ActingLength<S>, const UNITS: usize] Coefficients<S, A, U
 struct Unit<S: Scalar, L> {
     /// Index of its fibre type.
     fiber: usize,
-    /// Share of the muscle's cross section.
+    /// Cross section, as a share of the muscle.
     share: S,
     firing: Firing<S>,
     acting_length: L,
@@ -62,7 +62,7 @@ struct Unit<S: Scalar, L> {
 
 summed!([S: Scalar, L: Summed] Unit<S, L> { fiber, share, firing, acting_length });
 
-/// What each motor unit has of its own.
+/// State of the motor units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteState<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
     units: [UnitState<S, A::State>; UNITS],
@@ -80,7 +80,7 @@ struct UnitState<S: Scalar, L> {
     acting_length: L,
 }
 
-/// Threshold of the first unit, however small it is.
+/// Lower bound of recruitment thresholds.
 const LEAST_THRESHOLD: f64 = 0.001;
 
 impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> RecruitmentTick<S, N>
@@ -98,7 +98,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
     ) -> Result<Self, ParameterError> {
         units.validate(params)?;
         let mut cumulative = 0.0;
-        let mut described = units.iter().filter_map(|unit| {
+        let mut coefficients = units.iter().filter_map(|unit| {
             let fiber_type = &params.fibers.get(unit.fiber)?.fiber_type;
             cumulative += unit.share;
             let threshold = params.recruitment_saturation * cumulative;
@@ -110,10 +110,10 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 acting_length: A::new(fiber_type, params.fascicle_domain(), step),
             })
         });
-        let Some(first) = described.next() else { return Err(units.none()) };
-        // Places beyond the last unit are never stepped.
+        let Some(first) = coefficients.next() else { return Err(units.none()) };
+        // Elements from `count` on are unused.
         let mut all = [first; UNITS];
-        all.iter_mut().skip(1).zip(described).for_each(|(place, unit)| *place = unit);
+        all.iter_mut().skip(1).zip(coefficients).for_each(|(place, unit)| *place = unit);
         Ok(Self { firing: S::from_f64(SagParams::FIRING), units: all, count: units.count() })
     }
 
@@ -169,7 +169,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             };
             let drive = unit.firing.frequency(moment.input.activation);
             let before = kept.effective_frequency;
-            let driven = Driven {
+            let input = ExcitationInput {
                 excitation: &fiber.excitation,
                 intermediate: kept.intermediate_frequency,
                 effective: before,
@@ -177,8 +177,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 frequency: drive,
                 slowing: kept.activity.predicted,
             };
-            let [excited] =
-                excitation::advance([driven], moment.fascicle_length, moment.reciprocal);
+            let [excited] = excitation::advance([input], moment.fascicle_length, moment.reciprocal);
             kept.intermediate_frequency = excited.intermediate;
             kept.effective_frequency = excited.effective;
             let acting_length = A::advance(
@@ -192,7 +191,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 None => [*curve],
             };
             let firing = share_above(S::of(before), S::of(excited.effective), self.firing);
-            let sag = sagged(fiber, &mut kept.sag, firing);
+            let sag = advance_sag(fiber, &mut kept.sag, firing);
             let frequency = excited.effective_at_middle * (*yieldings * sag);
             let activation = curve.at(frequency);
             kept.activity = kept.activity.next(activation);

@@ -1,11 +1,11 @@
-//! Intramuscular FES: every fibre type is recruited in proportion to its cross section, at one
-//! stimulation frequency.
+//! Intramuscular FES: all fibre types are recruited in proportion to their cross section and fire
+//! at the stimulation frequency.
 //!
-//! f_env_i = f_stim/f0.5_i, always on, and Af_i uses it directly; the two lags of excitation are
-//! driven by U instead and carry the recruitment. Rising Tf = Tf1 L² + Tf2 f_env_i, falling
-//! Tf = (Tf3 + Tf4 [U > 0])/L. Sag switches on f_env_i > 0.1.
+//! f_env_i = f_stim/f0.5_i at any U, and Af_i depends on f_env_i directly. The input of the two
+//! lags of excitation is U; their output is the recruitment. Rising Tf = Tf1 L² + Tf2 f_env_i,
+//! falling Tf = (Tf3 + Tf4 [U > 0])/L. Sag has its firing level if f_env_i > 0.1.
 
-use super::lumped::{self, Advanced, Lumped, LumpedState};
+use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
 use crate::checksum::summed;
 use crate::equations::sag::SagParams;
@@ -19,7 +19,7 @@ use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
 use core::array::from_fn;
 
-/// Intramuscular FES: activation is the strength of the stimulus.
+/// Intramuscular FES: the activation is the stimulus intensity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IntramuscularFes;
 
@@ -35,6 +35,7 @@ impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Coefficients<S: Scalar, const N: usize> {
+    /// f_env above which a type counts as firing, f0.5.
     firing: S,
     units: [Unit<S>; N],
 }
@@ -51,7 +52,7 @@ struct Unit<S: Scalar> {
 summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
 impl<S: Scalar, const N: usize> Coefficients<S, N> {
-    /// Recruited share of the muscle of each type.
+    /// Recruited cross section of each type, as a share of the muscle.
     pub(crate) fn weights(&self, state: &LumpedState<S, N>) -> [S; N] {
         core::array::from_fn(|i| {
             self.units[i].fraction * S::of(state.fibers[i].effective_frequency)
@@ -99,7 +100,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     ) -> Result<Self::State, RestoreError> {
         let highest = self.first_frequency(S::quantity(MAXIMUM_STIMULATION_FREQUENCY));
         let first_frequency = Range { least: S::ZERO, most: highest };
-        // The two lags carry the recruitment.
+        // The states of the two lags are shares of recruitment.
         LumpedState::restored(fibers, saved, first_frequency, [share(); N])
     }
 
@@ -112,25 +113,29 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
     ) -> [Recruited<S>; N] {
         let input = &moment.input;
         let slowing = if input.activation > S::ZERO { S::ONE } else { S::ZERO };
-        // Af takes the frequency as it is: where that steps, so does Af.
+        // Af depends on the frequency without a lag and jumps with it.
         let first = self.first_frequency(input.stimulation_frequency);
         let jumps = first != S::of(state.shared);
         state.shared = first.lag_state();
         let frequencies = self.units.each_ref().map(|unit| {
             S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency)
         });
-        let described = |i: usize, kept| Lumped {
+        let input_of_type = |i: usize, fiber_state| LumpedInput {
             fiber: &fibers[i],
-            kept,
+            state: fiber_state,
             drive: input.activation,
             frequency: frequencies[i],
             slowing,
             yielding: moment.yieldings[i],
         };
-        let advanced =
-            lumped::advance_all::<S, true, N>(&mut state.fibers, described, moment, self.firing);
+        let advanced = lumped::advance_all::<S, true, N>(
+            &mut state.fibers,
+            input_of_type,
+            moment,
+            self.firing,
+        );
         from_fn(|i| {
-            let Advanced { effective, change, activation } = advanced[i];
+            let LumpedOutput { effective, change, activation } = advanced[i];
             let fraction = self.units[i].fraction;
             Recruited {
                 activation,

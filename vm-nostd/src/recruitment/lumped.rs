@@ -1,9 +1,9 @@
-//! State and tick of the modes that take each fibre type as one unit.
+//! State and tick of the modes with one lumped unit per fibre type.
 
 use super::mode::{Moment, RecruitmentState};
-use super::unit::{Activity, sagged};
+use super::unit::{Activity, advance_sag};
 use crate::equations::activation_frequency;
-use crate::equations::excitation::{self, Driven};
+use crate::equations::excitation::{self, ExcitationInput};
 use crate::equations::sag::share_above;
 use crate::fiber::Fiber;
 use crate::saved::{RestoreError, Saved};
@@ -11,18 +11,18 @@ use crate::scalar::Scalar;
 use crate::tick::range::Range;
 use core::array::from_fn;
 
-/// Recruitment, and excitation of each type.
+/// Recruitment, and the excitation of each type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LumpedState<S: Scalar, const N: usize> {
-    /// What the types share: U_eff, 0..1 (natural continuous); f_env of the first in the last tick,
-    /// f0.5 (intramuscular FES).
+    /// Common to all types: U_eff, 0..1 (natural continuous); f_env of the first type in the last
+    /// tick, f0.5 (intramuscular FES).
     pub(crate) shared: S::LagState,
     pub(super) fibers: [FiberState<S>; N],
-    /// Af of each type.
+    /// Last and predicted Af of each type.
     pub(crate) activities: [Activity<S>; N],
 }
 
-/// What each fibre type has of its own.
+/// State of one fibre type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberState<S: Scalar> {
     /// f_int, f0.5 (intramuscular FES: intermediate recruitment, 0..1).
@@ -46,8 +46,8 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
         }
     }
 
-    /// The state whose words come next, with what the types share and f_int and f_eff of each in
-    /// their ranges.
+    /// Restores the state from the next words. `shared` and `frequencies` (f_int and f_eff of each
+    /// type) are the valid ranges.
     pub(super) fn restored<I: Iterator<Item = S::Bits>>(
         fibers: &[Fiber<S>; N],
         saved: &mut Saved<I>,
@@ -57,8 +57,8 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
         let mut state = Self::at_rest(fibers);
         state.shared = saved.lag_state(&shared)?;
         let units = state.fibers.iter_mut().zip(&mut state.activities);
-        for (((kept, activity), fiber), range) in units.zip(fibers).zip(&frequencies) {
-            *kept = FiberState {
+        for (((fiber_state, activity), fiber), range) in units.zip(fibers).zip(&frequencies) {
+            *fiber_state = FiberState {
                 intermediate_frequency: saved.lag_state(range)?,
                 effective_frequency: saved.lag_state(range)?,
                 sag: saved.lag_state(&fiber.sag.range())?,
@@ -83,74 +83,79 @@ impl<S: Scalar, const N: usize> RecruitmentState<S> for LumpedState<S, N> {
     }
 }
 
-/// A fibre type in a tick.
+/// One fibre type during a tick. Values are at mid-tick.
 #[derive(Debug)]
-pub(super) struct Lumped<'a, S: Scalar> {
+pub(super) struct LumpedInput<'a, S: Scalar> {
     pub(super) fiber: &'a Fiber<S>,
-    pub(super) kept: &'a mut FiberState<S>,
-    /// What f_int tends to; f_env; the factor of Tf4; and Y, at the tick's middle.
+    pub(super) state: &'a mut FiberState<S>,
+    /// Target of f_int, f0.5.
     pub(super) drive: S,
+    /// f_env, f0.5.
     pub(super) frequency: S,
+    /// Factor of Tf4, 0..1.
     pub(super) slowing: S,
+    /// Y.
     pub(super) yielding: S,
 }
 
-/// What a tick makes of a fibre type.
+/// Result of a tick for one fibre type.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Advanced<S> {
-    /// f_eff at the tick's middle, and how it changes in the tick.
+pub(super) struct LumpedOutput<S> {
+    /// Mid-tick f_eff.
     pub(super) effective: S,
+    /// Change of f_eff during the tick.
     pub(super) change: S,
-    /// Af at the middle.
+    /// Mid-tick Af.
     pub(super) activation: S,
 }
 
-/// One tick of all types, as `described` by index and state: side by side where registers last for
-/// that, or one after the other.
+/// Advances all types by one tick; `input` gives the input of a type from its index and state. If
+/// [`Scalar::SIDE_BY_SIDE`], each operation is done for all types before the next one; otherwise
+/// the types are advanced one after the other.
 #[inline(always)]
 pub(super) fn advance_all<'a, S: Scalar, const STIMULATED: bool, const N: usize>(
     states: &'a mut [FiberState<S>; N],
-    described: impl Fn(usize, &'a mut FiberState<S>) -> Lumped<'a, S>,
+    input: impl Fn(usize, &'a mut FiberState<S>) -> LumpedInput<'a, S>,
     moment: &Moment<S, N>,
     firing: S,
-) -> [Advanced<S>; N] {
+) -> [LumpedOutput<S>; N] {
     if S::SIDE_BY_SIDE {
         let mut index = 0..N;
-        let types = states.each_mut().map(|kept| described(index.next().unwrap_or(0), kept));
+        let types = states.each_mut().map(|state| input(index.next().unwrap_or(0), state));
         return advance::<S, STIMULATED, N, N>(types, moment, firing);
     }
-    let mut all = [Advanced { effective: S::ZERO, change: S::ZERO, activation: S::ZERO }; N];
-    for (index, (one, kept)) in all.iter_mut().zip(states).enumerate() {
-        [*one] = advance::<S, STIMULATED, N, 1>([described(index, kept)], moment, firing);
+    let mut all = [LumpedOutput { effective: S::ZERO, change: S::ZERO, activation: S::ZERO }; N];
+    for (index, (one, state)) in all.iter_mut().zip(states).enumerate() {
+        [*one] = advance::<S, STIMULATED, N, 1>([input(index, state)], moment, firing);
     }
     all
 }
 
-/// One tick of some types, side by side; they fire from a frequency `firing` on. `STIMULATED`,
-/// f_env sets Af and sag, else f_eff.
+/// Advances some types by one tick, side by side. A type counts as firing above the frequency
+/// `firing` (f0.5). Af and sag depend on f_env if `STIMULATED`, otherwise on f_eff.
 #[inline(always)]
 fn advance<S: Scalar, const STIMULATED: bool, const N: usize, const SOME: usize>(
-    types: [Lumped<'_, S>; SOME],
+    types: [LumpedInput<'_, S>; SOME],
     moment: &Moment<S, N>,
     firing: S,
-) -> [Advanced<S>; SOME] {
-    let driven = types.each_ref().map(|t| Driven {
+) -> [LumpedOutput<S>; SOME] {
+    let inputs = types.each_ref().map(|t| ExcitationInput {
         excitation: &t.fiber.excitation,
-        intermediate: t.kept.intermediate_frequency,
-        effective: t.kept.effective_frequency,
+        intermediate: t.state.intermediate_frequency,
+        effective: t.state.effective_frequency,
         drive: t.drive,
         frequency: t.frequency,
         slowing: t.slowing,
     });
-    let excited = excitation::advance(driven, moment.fascicle_length, moment.reciprocal);
+    let excited = excitation::advance(inputs, moment.fascicle_length, moment.reciprocal);
     let relations = types.each_ref().map(|t| &t.fiber.activation);
     let mut changes = [S::ZERO; SOME];
     let mut frequencies = [S::ZERO; SOME];
     for (i, t) in types.into_iter().enumerate() {
-        let (before, after) = (S::of(t.kept.effective_frequency), S::of(excited[i].effective));
+        let (before, after) = (S::of(t.state.effective_frequency), S::of(excited[i].effective));
         changes[i] = after - before;
-        t.kept.intermediate_frequency = excited[i].intermediate;
-        t.kept.effective_frequency = excited[i].effective;
+        t.state.intermediate_frequency = excited[i].intermediate;
+        t.state.effective_frequency = excited[i].effective;
         let fired = if !STIMULATED {
             share_above(before, after, firing)
         } else if t.frequency > firing {
@@ -158,12 +163,12 @@ fn advance<S: Scalar, const STIMULATED: bool, const N: usize, const SOME: usize>
         } else {
             S::ZERO
         };
-        let sag = sagged(t.fiber, &mut t.kept.sag, fired);
+        let sag = advance_sag(t.fiber, &mut t.state.sag, fired);
         let acting = if STIMULATED { t.frequency } else { excited[i].effective_at_middle };
         frequencies[i] = acting * (t.yielding * sag);
     }
     let curves = activation_frequency::curves(relations, moment.reciprocal);
-    from_fn(|i| Advanced {
+    from_fn(|i| LumpedOutput {
         effective: excited[i].effective_at_middle,
         change: changes[i],
         activation: curves[i].at(frequencies[i]),

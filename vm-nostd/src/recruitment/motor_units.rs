@@ -4,14 +4,16 @@ use crate::error::{Limit, ParameterError, within};
 use crate::params::MuscleParams;
 use heapless::Vec;
 
-/// A rule for the sizes of a type's units, in order of recruitment.
+/// A rule for the sizes of the units of a type, in order of recruitment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnitSizes<'a> {
-    /// A number of units, the j-th in proportion to the type's rank + j.
+    /// The authors' rule for a number of units: the size of unit j is proportional to rank of the
+    /// type + j.
     Default(usize),
-    /// A number of equal units.
+    /// A number of units of equal size.
     Equal(usize),
-    /// A number of units, each larger than the one before by a fraction of it, -0.5 to 1.
+    /// A number of units and their growth, -0.5 to 1: the size of each is that of the previous
+    /// times 1 + growth.
     Geometric(usize, f64),
     /// Relative sizes, each 1e-12 to 1e12.
     Listed(&'a [f64]),
@@ -22,7 +24,7 @@ const TOO_MANY: &str = "units: total count";
 const GROWTH: &str = "units: geometric growth";
 const SIZE: &str = "units: listed size";
 const SMALLEST: &str = "units: smallest share of a type";
-/// Lower limit of a unit's share in its type's cross section.
+/// Lower limit of the cross section of a unit, as a share of its type.
 const LEAST_SHARE: f64 = 1e-9;
 const TYPES: &str = "units: number of types";
 const SHARE: &str = "units: fraction of the type";
@@ -37,14 +39,14 @@ impl UnitSizes<'_> {
         }
     }
 
-    /// Relative size of unit `index` in a type of a rank, given that of the unit before.
+    /// Relative size of unit `index` of a type of a rank; `before` is that of the previous unit.
     fn relative(&self, index: usize, rank: u8, before: f64) -> f64 {
         match *self {
             Self::Default(_) => f64::from(rank) + (index + 1) as f64,
             Self::Equal(_) => 1.0,
             Self::Geometric(..) if index == 0 => 1.0,
             Self::Geometric(_, growth) => before * (1.0 + growth),
-            // Not reached beyond the last size.
+            // `index` is in range: `count` is the number of sizes.
             Self::Listed(sizes) => sizes.get(index).copied().unwrap_or(before),
         }
     }
@@ -66,7 +68,7 @@ impl UnitSizes<'_> {
 pub(super) struct MotorUnit {
     /// Index of its fibre type.
     pub(super) fiber: usize,
-    /// Its share of the muscle's cross section.
+    /// Cross section, as a share of the muscle.
     pub(super) share: f64,
 }
 
@@ -86,7 +88,7 @@ pub(super) struct MotorUnit {
 /// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
 /// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS, fibers,
 /// # };
-/// // 30 slow units of the authors' sizes, and 20 fast units, each 5 % larger than the last.
+/// // 30 slow units of the authors' sizes, and 20 fast units, each 5 % larger than the previous.
 /// let sizes = [UnitSizes::Default(30), UnitSizes::Geometric(20, 0.05)];
 /// let units = MotorUnits::<50>::new(&params, sizes)?;
 /// let step = TimeStep::MILLISECOND;
@@ -102,9 +104,9 @@ pub struct MotorUnits<const UNITS: usize> {
 }
 
 impl<const UNITS: usize> MotorUnits<UNITS> {
-    /// Divides the types of a muscle into units by a rule per type. An error if a type has no
-    /// units, if there are more than `UNITS` in total, if a size is out of range, or if a unit has
-    /// less than 1e-9 of its type.
+    /// Divides each type of a muscle into units by its rule. Returns an error if a type has no
+    /// units, if there are more than `UNITS` in total, if a size is out of range, or if a unit is
+    /// smaller than 1e-9 of its type.
     pub fn new<const N: usize>(
         params: &MuscleParams<N>,
         sizes: [UnitSizes<'_>; N],

@@ -1,25 +1,25 @@
-//! What the modes share in a tick of a unit: a fibre type or a motor unit.
+//! Sag and predicted activation of a unit (a fibre type or a motor unit), common to all modes.
 
 use crate::fiber::Fiber;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::tick::range::share;
 
-/// Advances S of a unit by one tick, of which it is `firing` for a share, and gives S at the tick's
-/// middle.
+/// Advances S of a unit by one tick, in which it fires for the share `firing` (0..1). Returns the
+/// mid-tick S.
 #[inline(always)]
-pub(crate) fn sagged<S: Scalar>(fiber: &Fiber<S>, sag: &mut S::LagState, firing: S) -> S {
+pub(crate) fn advance_sag<S: Scalar>(fiber: &Fiber<S>, sag: &mut S::LagState, firing: S) -> S {
     let before = S::of(*sag);
     *sag = fiber.sag.advance(*sag, firing);
     (before + S::of(*sag)).half()
 }
 
-/// Af of a unit from tick to tick: what its fall time has to be told before Af is.
+/// Last and predicted Af of a unit. The fall time depends on Af before Af of the tick is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Activity<S> {
-    /// Af at the middle of the last tick, 0..1.
+    /// Af at the last mid-tick, 0..1.
     last: S,
-    /// Af predicted for the middle of the next, 0..1: as far on as it came last.
+    /// Af at the next mid-tick, 0..1, by linear extrapolation.
     pub(crate) predicted: S,
 }
 
@@ -27,10 +27,9 @@ impl<S: Scalar> Activity<S> {
     pub(super) const WORDS: usize = 2;
     pub(super) const NONE: Self = Self { last: S::ZERO, predicted: S::ZERO };
 
-    /// What follows Af at the middle of a tick.
+    /// Updates with the Af of a mid-tick.
     pub(super) fn next(&self, activation: S) -> Self {
-        let share = share();
-        let (predicted, _) = share.clip(activation + (activation - self.last));
+        let (predicted, _) = share().clip(activation + (activation - self.last));
         Self { last: activation, predicted }
     }
 
@@ -41,7 +40,7 @@ impl<S: Scalar> Activity<S> {
     pub(super) fn restored<I: Iterator<Item = S::Bits>>(
         saved: &mut Saved<I>,
     ) -> Result<Self, RestoreError> {
-        let mut of_share = || saved.number(|value| share().contains(value));
-        Ok(Self { last: of_share()?, predicted: of_share()? })
+        let mut activation = || saved.number(|value| share().contains(value));
+        Ok(Self { last: activation()?, predicted: activation()? })
     }
 }

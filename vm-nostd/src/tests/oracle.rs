@@ -3,7 +3,7 @@
 
 use crate::ContinuousMuscle;
 use crate::equations::activation_frequency::{self, ActivationFrequency};
-use crate::equations::excitation::{self, Driven, Excitation};
+use crate::equations::excitation::{self, Excitation, ExcitationInput};
 use crate::equations::force_length::tests::{force_length, papers_force_length};
 use crate::equations::force_velocity::ForceVelocity;
 use crate::equations::passive::{Compression, Parallel};
@@ -283,7 +283,7 @@ fn excitation_is_exact_even_if_its_lags_cross_within_a_tick() {
         for (start, drive) in cases {
             let (l, af) = (1.13, 0.4);
             let (f_int, f_eff) = excitation_by_small_steps(&t, start, drive, l, af);
-            let driven = Driven {
+            let input = ExcitationInput {
                 excitation: &excitation,
                 intermediate: start.0,
                 effective: start.1,
@@ -291,7 +291,7 @@ fn excitation_is_exact_even_if_its_lags_cross_within_a_tick() {
                 frequency: drive,
                 slowing: af,
             };
-            let [excited] = excitation::advance([driven], l, 1.0 / l);
+            let [excited] = excitation::advance([input], l, 1.0 / l);
             let (a, b) = (excited.intermediate - f_int, excited.effective - f_eff);
             assert!(a.abs() < 1e-6 && b.abs() < 1e-6, "{start:?} to {drive}: {a:e} {b:e}");
             assert!(excited.effective >= 0.0 && excited.effective_at_middle >= 0.0);
