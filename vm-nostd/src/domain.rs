@@ -25,22 +25,22 @@ pub(crate) struct Domain<S: Scalar> {
     pub(crate) fascicle_length: Range<S>,
     /// State range of the velocity, L_ce0/s.
     pub(crate) fascicle_velocity: Range<S>,
-    /// Intersection of `fascicle_length` and `filaments`, L_ce0.
-    usual: Range<S>,
+    /// Intersection of `fascicle_length` and `filaments`, L_ce0: lengths that raise no flag.
+    unflagged: Range<S>,
 }
 
 /// Mid-tick fascicle length.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Midway<S> {
+pub(crate) struct MidTickLength<S> {
     /// Clamped to the state range, L_ce0.
     pub(crate) length: S,
     /// Clamped to the validity range of the filaments' equations, L_ce0.
-    pub(crate) inside: S,
-    /// Whether neither was clamped.
-    pub(crate) usual: bool,
+    pub(crate) valid: S,
+    /// True if neither was clamped.
+    pub(crate) unclamped: bool,
 }
 
-summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity, usual });
+summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity, unflagged });
 
 impl<S: Scalar> Domain<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {
@@ -58,28 +58,29 @@ impl<S: Scalar> Domain<S> {
             )),
             fascicle_length: Range::new((filaments.0, longest), S::from_f64),
             fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
-            usual: Range::new((filaments.0, Scalar::min(filaments.1, longest)), S::from_f64),
+            unflagged: Range::new((filaments.0, Scalar::min(filaments.1, longest)), S::from_f64),
         }
     }
 
     /// Clamps the predicted mid-tick length (L_ce0) to the state range and the validity range.
-    pub(crate) fn midway(&self, length: S) -> Midway<S> {
-        if self.usual.contains(length) {
-            return Midway { length, inside: length, usual: true };
+    pub(crate) fn mid_tick_length(&self, predicted: S) -> MidTickLength<S> {
+        if self.unflagged.contains(predicted) {
+            return MidTickLength { length: predicted, valid: predicted, unclamped: true };
         }
-        let (length, _) = self.fascicle_length.clip(length);
-        let (inside, _) = self.filaments.clip(length);
-        Midway { length, inside, usual: false }
+        let (length, _) = self.fascicle_length.clip(predicted);
+        let (valid, _) = self.filaments.clip(length);
+        MidTickLength { length, valid, unclamped: false }
     }
 
     /// True if a length (L_ce0) and a velocity (L_ce0/s) at the end of a tick raise no flag.
-    pub(crate) fn is_usual(&self, length: S, velocity: S) -> bool {
-        self.usual.contains(length)
+    pub(crate) fn raises_no_flag(&self, length: S, velocity: S) -> bool {
+        self.unflagged.contains(length)
             && velocity > self.shortening_velocity
             && velocity < self.fascicle_velocity.most
     }
 
-    /// Clamps the input to the validity ranges and returns the flags.
+    /// Clamps the input to the validity ranges and returns the flags. A path length that is NaN is
+    /// replaced by `path_before`.
     pub(crate) fn admit(&self, input: Input<S>, path_before: S::PathLength) -> (Input<S>, Status) {
         let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO, S::is_finite);
         let (stimulation_frequency, f) = admit_one(

@@ -1,4 +1,4 @@
-//! A muscle: parameters made into coefficients once, and the tick.
+//! A muscle: its coefficients, computed once from the parameters, and the tick.
 
 use crate::checksum::{Checksum, Summed, summed};
 use crate::domain::Domain;
@@ -36,9 +36,10 @@ pub type DiscreteMuscle<S, const N: usize, const UNITS: usize> =
 pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
     Muscle<S, NaturalDiscrete<EffectiveLength, UNITS>, N>;
 
-/// A muscle of `N` fibre types, computed in `S`, recruited as `R` says: constant coefficients.
+/// Coefficients of a muscle of `N` fibre types with arithmetic `S` and recruitment mode `R`.
 ///
-/// All that changes is in its [`State`], so that one muscle can serve several states.
+/// They are constant; everything that changes is in a [`State`]. One muscle can be used with
+/// several states.
 #[derive(Clone, Copy, Debug)]
 pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     pub(crate) domain: Domain<S>,
@@ -48,7 +49,7 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     pub(crate) parallel: Parallel<S>,
     pub(crate) compression: Compression<S>,
     pub(crate) contraction: Contraction<S>,
-    /// F0.
+    /// F0, as a factor from relative force to force.
     force: S::Factor,
     max_isometric_force: S::Force,
     /// Ticks per second.
@@ -57,20 +58,21 @@ pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 
 summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, optimal_length, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
 
-/// Bisections that bring a resting length to the last bit of `f32` and near that of `f64`.
+/// Number of bisections for the length at rest: accurate to the last bit in `f32`, nearly so in
+/// `f64`.
 const REST_BISECTIONS: usize = 48;
 
 impl<S: Scalar, R: Recruitment<S, N, Units = ()>, const N: usize> Muscle<S, R, N> {
-    /// Builds a muscle for a time step, or refuses with the name of the field, its value and the
-    /// limit it broke.
+    /// Builds a muscle for a time step. An error gives the name of the field, its value and the
+    /// limit.
     pub fn build(params: &MuscleParams<N>, step: TimeStep) -> Result<Self, ParameterError> {
         Self::build_with_units(params, &(), step)
     }
 }
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
-    /// Builds a muscle whose mode has motor units for a time step, or refuses with the name of the
-    /// field, its value and the limit it broke.
+    /// Builds a muscle with motor units for a time step. An error gives the name of the field, its
+    /// value and the limit.
     pub fn build_with_units(
         params: &MuscleParams<N>,
         units: &R::Units,
@@ -82,7 +84,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
         let (least, most) = S::MAXIMAL_FORCES;
         let force = params.max_isometric_force();
-        // A force that was made into a mass comes back rounded.
+        // F0 at a limit may be outside it by rounding if the mass was computed from F0.
         let nearest = Scalar::min(Scalar::max(force, least), most);
         let rounded = (force - nearest).abs() <= 1e-9 * nearest;
         within("mass: F0, N", if rounded { nearest } else { force }, least, most)?;
@@ -101,15 +103,15 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         })
     }
 
-    /// The muscle at rest on a path of so many metres, in any arithmetic; see
-    /// [`rest`](Self::rest). Fixed point takes the nearest 1/512 µm.
+    /// The muscle at rest at a path length in m, in any arithmetic; see [`rest`](Self::rest). Fixed
+    /// point rounds to the nearest 1/512 µm.
     pub fn rest_at_metres(&self, path_length: f64) -> Result<State<S, R, N>, ParameterError> {
-        let refused = |error| ParameterError { value: path_length, ..error };
-        self.rest(S::path_length(path_length)).map_err(refused)
+        let in_metres = |error| ParameterError { value: path_length, ..error };
+        self.rest(S::path_length(path_length)).map_err(in_metres)
     }
 
-    /// The muscle at rest on a path of `path_length`: not activated, not moving, tendon and
-    /// parallel elastic element in balance. Refused outside of
+    /// The muscle at rest at a path length: zero activation, zero velocity, and tendon force equal
+    /// to that of the parallel elastic element. Returns an error outside
     /// [`path_length_range`](Self::path_length_range).
     pub fn rest(&self, path_length: S::PathLength) -> Result<State<S, R, N>, ParameterError> {
         let range = &self.domain.path_length;
@@ -122,7 +124,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         for _ in 0..REST_BISECTIONS {
             let extension = (least + most).half();
             let length = tendon.fascicle_length(path_length, extension);
-            // The tendon pulls more, and the parallel element less, the further it is extended.
+            // With the extension of the tendon its force rises and that of the parallel element
+            // falls.
             if tendon.pull(extension).force > self.parallel.at(length).0 {
                 most = extension;
             } else {
@@ -141,44 +144,42 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         })
     }
 
-    /// Maximal isometric force F0, in N (in fixed point: mN).
+    /// Maximal isometric force F0: N in floating point, mN in fixed point.
     pub fn max_isometric_force(&self) -> S::Force {
         self.max_isometric_force
     }
 
-    /// Checksum of all coefficients: it stays what it is as long as memory does. Firmware that
-    /// compares it every tick sees a flipped bit before it makes a force.
+    /// Checksum of all coefficients. Firmware that compares it every tick detects a flipped bit in
+    /// memory before the bit affects a force.
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
         self.sum(&mut checksum);
         checksum.value()
     }
 
-    /// Shortest and longest path that are taken as they are; others are clipped and flagged.
+    /// Shortest and longest valid path; path lengths outside are clipped and flagged.
     pub fn path_length_range(&self) -> (S::PathLength, S::PathLength) {
         (self.domain.path_length.least, self.domain.path_length.most)
     }
 
-    /// What saved states begin with: it tells muscles apart, their modes, time steps and
-    /// arithmetics.
+    /// Fingerprint of muscle, mode, time step and arithmetic: the first word of a saved state.
     fn fingerprint(&self) -> u32 {
-        // The time step is in the coefficients; where no bit of them differs, the muscles are the
-        // same.
+        // The coefficients depend on the time step. Muscles with equal coefficients are equivalent.
         let mut fingerprint = Checksum::EMPTY;
         let words = [S::ARITHMETIC, R::MODE, N as u32, self.checksum()];
         words.into_iter().for_each(|word| fingerprint.add(word));
         fingerprint.value()
     }
 
-    /// The words to save a state of this muscle in, [`State::SAVED_WORDS`] of them: a fingerprint
-    /// of the muscle, its mode, time step and arithmetic, and [`State::words`]. A muscle of other
-    /// fields or whose memory has lost a bit has another fingerprint, but for a chance of 2^-32.
+    /// The [`State::SAVED_WORDS`] words of a saved state of this muscle: a fingerprint of the
+    /// muscle, mode, time step and arithmetic, then [`State::words`]. With other parameters or
+    /// after a bit flip in memory, the fingerprint differs, with an error probability of 2^-32.
     pub fn save(&self, state: &State<S, R, N>) -> impl Iterator<Item = S::Bits> {
         core::iter::once(S::Bits::from(self.fingerprint())).chain(state.words())
     }
 
-    /// A state saved by [`Muscle::save`], refused unless it is this muscle's, for this time step,
-    /// and one it can be in.
+    /// Restores a state saved by [`Muscle::save`]. Returns an error if the number of words is
+    /// wrong, if the fingerprint is not that of this muscle, or if a value is out of range.
     pub fn restore(
         &self,
         words: impl IntoIterator<Item = S::Bits>,
@@ -190,22 +191,22 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
         let path_length = saved.path::<S>(&self.domain.path_length)?;
         let rounding = S::from_f64(ROUNDING);
-        let about_a_share = |value: S| share::<S>().about_contains(value, rounding);
-        let compressed = saved.number(about_a_share)?;
+        let is_share = |value: S| share::<S>().contains_within(value, rounding);
+        let compressed = saved.number(is_share)?;
         let speed = Speed::restored(&mut saved)?;
         let length = self.contraction.tendon.fascicle_length(path_length, tendon_extension);
         let (nearest, _) = self.domain.fascicle_length.clip(length);
-        // A length that was stopped at a limit comes back with the rounding of its extension.
+        // A length clamped to a limit may be outside it by the rounding of the extension.
         if (length - nearest).abs() > S::from_f64(1e-4) {
             return Err(RestoreError::Value { word: 1 });
         }
         let mut gains = [S::ZERO; N];
         for gain in &mut gains {
-            *gain = saved.number(about_a_share)?;
+            *gain = saved.number(is_share)?;
         }
         let mut yieldings = [S::ONE.lag_state(); N];
-        for (kept, fiber) in yieldings.iter_mut().zip(&self.fibers) {
-            *kept = saved.lag_state(&fiber.yielding.range())?;
+        for (yielding, fiber) in yieldings.iter_mut().zip(&self.fibers) {
+            *yielding = saved.lag_state(&fiber.yielding.range())?;
         }
         let recruitment = self.recruitment.restored(&self.fibers, &mut saved)?;
         saved.finished()?;
@@ -221,7 +222,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         })
     }
 
-    /// The state as an output, as it was after the tick that left it: force, length, velocity.
+    /// Output of a state without a tick: force, fascicle length and velocity, and no flags.
     pub fn observe(&self, state: &State<S, R, N>) -> Output<S> {
         let tendon = &self.contraction.tendon;
         let relative_force = tendon.pull(state.tendon_extension).force;
@@ -234,24 +235,24 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
     }
 
-    /// Steps one tick. Never fails; no loop depends on data; what had to be saturated is in the
-    /// output's status, and the state stays finite whatever comes.
+    /// Advances the state by one tick. Never fails; the number of iterations is fixed; the output's
+    /// status flags what was clipped or clamped; the state stays finite for any input.
     ///
-    /// Slow quantities (excitation, sag, yield, activation, the lengths' influence) are taken at
-    /// the middle of the tick and change across it as they did since the middle before; the
-    /// mechanics are then integrated implicitly on top of them.
+    /// Slow quantities (excitation, sag, yield, activation, factors that depend on length) are
+    /// evaluated at mid-tick and extrapolated linearly across the tick, with their change since the
+    /// last mid-tick. The mechanics are then integrated implicitly.
     pub fn step(&self, state: &mut State<S, R, N>, input: Input<S>) -> Output<S> {
         let (input, mut status) = self.domain.admit(input, state.path_length);
         let tendon = &self.contraction.tendon;
 
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
         let travel = self.contraction.lengthening(state.fascicle_velocity);
-        let midway = self.domain.midway(length + travel.half());
+        let middle = self.domain.mid_tick_length(length + travel.half());
         let yieldings = self.yieldings(state);
-        let reciprocal = midway.inside.reciprocal();
+        let reciprocal = middle.valid.reciprocal();
         let moment =
-            Moment { input, fascicle_length: midway.length, travel, reciprocal, yieldings };
-        let contractile = self.contractile(state, &moment, length, midway.inside);
+            Moment { input, fascicle_length: middle.length, travel, reciprocal, yieldings };
+        let contractile = self.contractile(state, &moment, length, middle.valid);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
         let extension = Course { middle: state.tendon_extension + stretch.half(), change: stretch };
@@ -269,8 +270,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         state.tendon_extension =
             state.tendon_extension + stretch - self.contraction.lengthening(travel);
         let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
-        if !(midway.usual && self.domain.is_usual(length, velocity)) {
-            status |= self.confine(state, length, midway.length);
+        if !(middle.unclamped && self.domain.raises_no_flag(length, velocity)) {
+            status |= self.clamp_state(state, length, middle.length);
         }
 
         let tendon_pull = tendon.pull(state.tendon_extension);
@@ -284,12 +285,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         }
     }
 
-    /// Keeps `length` and velocity inside what the state can hold, and says what it had to keep,
-    /// and whether the filaments' equations held at the tick's `middle` and at its end.
-    fn confine(&self, state: &mut State<S, R, N>, length: S, middle: S) -> Status {
+    /// Clamps `length` and velocity to the state range. Returns flags for what was clamped, and a
+    /// flag if the mid-tick length (`middle`), the length or the velocity is outside the validity
+    /// range of the filaments' equations.
+    fn clamp_state(&self, state: &mut State<S, R, N>, length: S, middle: S) -> Status {
         let tendon = &self.contraction.tendon;
-        let (length, stopped) = self.domain.fascicle_length.clip(length);
-        if stopped {
+        let (length, length_limited) = self.domain.fascicle_length.clip(length);
+        if length_limited {
             state.tendon_extension = tendon.extension(state.path_length, length);
             state.fascicle_velocity = S::ZERO;
         }
@@ -297,59 +299,59 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (velocity, _) = speeds.clip(state.fascicle_velocity);
         state.fascicle_velocity = velocity;
         let mut status = Status::empty();
-        status.set(Status::FASCICLE_LENGTH_LIMITED, stopped);
-        let held = velocity >= speeds.most || velocity <= speeds.least;
-        status.set(Status::FASCICLE_VELOCITY_LIMITED, held);
-        // The coefficients were taken at the middle, the state is left at the end.
+        status.set(Status::FASCICLE_LENGTH_LIMITED, length_limited);
+        let velocity_limited = velocity >= speeds.most || velocity <= speeds.least;
+        status.set(Status::FASCICLE_VELOCITY_LIMITED, velocity_limited);
+        // The coefficients depend on the mid-tick length, the output on the length at the end.
         let outside = |length| !self.domain.filaments.contains(length);
         let too_fast = velocity < self.domain.shortening_velocity;
         status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside(middle) || outside(length) || too_fast);
         status
     }
 
-    /// Y of each type at the middle of the tick that begins. It is brought to that beginning by the
-    /// speed in the last tick, and goes on for half of this one as it did in the last.
+    /// Mid-tick Y of each type. Y is advanced to the start of this tick with the speed during the
+    /// last one, and extrapolated linearly by half a tick.
     fn yieldings(&self, state: &mut State<S, R, N>) -> [S; N] {
         let mut middles = [S::ONE; N];
-        let kept = state.yieldings.iter_mut().zip(&self.fibers);
-        for (middle, (kept, fiber)) in middles.iter_mut().zip(kept) {
-            let before = S::of(*kept);
-            *kept = fiber.yielding.advance(*kept, &state.speed);
-            let start = S::of(*kept);
+        let starts = state.yieldings.iter_mut().zip(&self.fibers);
+        for (middle, (yielding, fiber)) in middles.iter_mut().zip(starts) {
+            let before = S::of(*yielding);
+            *yielding = fiber.yielding.advance(*yielding, &state.speed);
+            let start = S::of(*yielding);
             *middle = start + (start - before).half();
         }
         middles
     }
 
-    /// Advances recruitment, and puts together the contractile element during the tick of a
-    /// `moment`, whose fascicles are at `start` when it starts and, where the filaments' equations
-    /// hold, `inside` at its middle (all L_ce0).
+    /// Advances recruitment and returns the contractile element during the tick. `start` is the
+    /// fascicle length at the start of the tick, `valid` the mid-tick length clamped to the
+    /// validity range of the filaments' equations (L_ce0).
     ///
-    /// Gains are taken at the middles of the ticks, and change across a tick by as much as from the
-    /// middle before to this one: their slopes by length, frequency and recruitment need not be
-    /// known.
+    /// Gains are evaluated at mid-tick. Their change across the tick is taken to be that since the
+    /// last mid-tick, so that no slopes with respect to length, frequency and recruitment are
+    /// needed.
     fn contractile(
         &self,
         state: &mut State<S, R, N>,
         moment: &Moment<S, N>,
         start: S,
-        inside: S,
+        valid: S,
     ) -> Contractile<'_, S, N> {
         let Moment { fascicle_length: middle, travel, .. } = *moment;
-        let distance = self.optimal_length.distance(inside);
+        let distance = self.optimal_length.distance(valid);
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
         let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, moment);
         let force_lengths =
             force_length::at(self.fibers.each_ref().map(|fiber| &fiber.force_length), &distance);
         let active: [S; N] = from_fn(|i| recruited[i].activation * force_lengths[i]);
-        let kept = state.gains;
+        let last_gains = state.gains;
         state.gains = from_fn(|i| recruited[i].weight * active[i]);
         let gains = from_fn(|i| {
             let gain = state.gains[i];
             let jump = recruited[i].change_after_jump;
-            let change = jump.map_or(gain - kept[i], |weight| weight * active[i]);
-            // A gain that falls fast would pass 0 before the tick's end.
+            let change = jump.map_or(gain - last_gains[i], |weight| weight * active[i]);
+            // Extrapolation must not make a fast-falling gain negative at the end of the tick.
             Course { middle: gain, change: change.max(-(gain + gain)) }
         });
         let compressed = recruited
@@ -366,7 +368,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             fibers: &self.fibers,
             curves: force_velocity::curves(
                 self.fibers.each_ref().map(|fiber| &fiber.force_velocity),
-                inside,
+                valid,
                 travel,
             ),
             passive: Course {

@@ -135,7 +135,7 @@ impl<I: Iterator> Saved<I> {
     {
         let value = S::lag_state_from_words(&mut self.words);
         self.checked(value, S::SLOW_WORDS, |value| {
-            range.about_contains(S::of(*value), S::from_f64(ROUNDING))
+            range.contains_within(S::of(*value), S::from_f64(ROUNDING))
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Clips inputs to their ranges.
+//! Clamps inputs to their validity ranges.
 
 use crate::status::Status;
 use crate::tick::range::Range;
@@ -21,7 +21,8 @@ impl Admission {
     }
 }
 
-/// Clips a value to a range; NaN is replaced by `instead`.
+/// Clamps a value to a range; NaN is replaced by `instead`. Infinities are clamped too, but
+/// reported as not finite.
 pub(crate) fn admit_one<T: Copy + PartialOrd>(
     range: &Range<T>,
     value: T,

@@ -1,8 +1,8 @@
-//! A quantity that changes linearly during a tick.
+//! A quantity as a linear function of time during a tick.
 
 use crate::scalar::Scalar;
 
-/// A quantity during a tick: its value at the middle, and its change from start to end.
+/// A linear function of time during a tick: the mid-tick value, and the change from start to end.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Course<S> {
@@ -11,7 +11,7 @@ pub struct Course<S> {
 }
 
 impl<S: Scalar> Course<S> {
-    /// The value `time` ticks after the middle.
+    /// The value `time` ticks after mid-tick, -1/2 to 1/2.
     #[inline(always)]
     pub(crate) fn at(&self, time: S::Part) -> S {
         self.middle + self.change.portion(time)

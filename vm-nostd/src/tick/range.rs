@@ -27,11 +27,11 @@ impl<T: Copy + PartialOrd> Range<T> {
     }
 
     /// Whether a value is in the range, with a rounding tolerance.
-    pub(crate) fn about_contains(&self, value: T, rounding: T) -> bool
+    pub(crate) fn contains_within(&self, value: T, tolerance: T) -> bool
     where
         T: Add<Output = T>,
     {
-        value + rounding >= self.least && value <= self.most + rounding
+        value + tolerance >= self.least && value <= self.most + tolerance
     }
 
     pub(crate) fn contains(&self, value: T) -> bool {
@@ -39,7 +39,7 @@ impl<T: Copy + PartialOrd> Range<T> {
     }
 }
 
-/// Range of a share.
+/// Range of a share, 0..1.
 pub(crate) fn share<S: Scalar>() -> Range<S> {
     Range { least: S::ZERO, most: S::ONE }
 }
