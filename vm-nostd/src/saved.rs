@@ -134,7 +134,7 @@ impl<I: Iterator> Saved<I> {
         I: Iterator<Item = S::Bits>,
     {
         let value = S::lag_state_from_words(&mut self.words);
-        self.checked(value, S::SLOW_WORDS, |value| {
+        self.checked(value, S::LAG_STATE_WORDS, |value| {
             range.contains_within(S::of(*value), S::from_f64(ROUNDING))
         })
     }

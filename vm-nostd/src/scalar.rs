@@ -1,4 +1,4 @@
-//! Arithmetics of the model.
+//! Arithmetics of the model: floating point and fixed point behind one trait.
 
 pub(crate) mod cold;
 pub(crate) mod fixed;
@@ -17,14 +17,14 @@ pub(crate) mod sealed {
 /// An arithmetic of the model: `f32` with a floating-point unit, [`Fixed`](crate::Fixed) without
 /// one, `f64` for comparison.
 ///
-/// The same source gives the same bits on any machine: `a * b + c` is never fused, and the kernels
-/// are portable code.
+/// Results are bit-identical on all machines: `a * b + c` is never fused, and the kernels are
+/// portable code.
 ///
-/// The equations are written once, over this trait. Sums and products saturate in fixed point;
-/// operations that need more resolution are explicit: [`scaled`](Scalar::scaled) by a constant of
-/// any magnitude, [`LagState`](Scalar::LagState) for the state of a lag, [`ratio`](Scalar::ratio).
+/// The equations are generic over this trait. Sums and products saturate in fixed point; operations
+/// that need more resolution are explicit: [`scaled`](Scalar::scaled) by a constant of any
+/// magnitude, [`LagState`](Scalar::LagState) for the state of a lag, [`ratio`](Scalar::ratio).
 ///
-/// Kernels and all that is called once a tick are inlined: a call costs a frame and spills
+/// Kernels and functions called once per tick are inlined: a call needs a stack frame and spills
 /// registers.
 pub trait Scalar:
     sealed::Sealed
@@ -43,13 +43,13 @@ pub trait Scalar:
 {
     /// A word of a saved state.
     type Bits: Copy + Debug + Eq + From<u32> + TryFrom<u64> + Into<u64> + Summed + Send + Sync;
-    /// A constant to multiply with, of any magnitude.
+    /// A constant factor of any magnitude.
     type Factor: Copy + Debug + Summed + Send + Sync;
     /// State of a lag, with more resolution than the number itself.
     type LagState: Copy + Debug + PartialEq + Send + Sync;
-    /// A number from -1/2 to 1/2, to multiply with: a part of a tick, or of what is of that order.
+    /// A factor from -1/2 to 1/2, such as a time in ticks since mid-tick.
     type Part: Copy + Debug + Add<Output = Self::Part> + Summed + Send + Sync;
-    /// A number from 0 to 1, to multiply with.
+    /// A factor from 0 to 1.
     type Unit: Copy + Debug + Send + Sync;
     /// Share, 0..1, of the distance of a lag to its target.
     type Share: Copy + Debug + Summed + Send + Sync;
@@ -76,8 +76,8 @@ pub trait Scalar:
     const LEAST: Self;
     /// Largest representable coefficient.
     const LARGEST_COEFFICIENT: f64;
-    /// Whether fibre types go through a tick side by side, so that one's results need not be waited
-    /// for; where registers are few, they go one after the other.
+    /// Whether each operation of a tick is done for all fibre types before the next one, which
+    /// hides latencies. With few registers it is faster to process one type after the other.
     const SIDE_BY_SIDE: bool;
     /// Range of maximal isometric force that outputs can represent, N.
     const MAXIMAL_FORCES: (f64, f64);
@@ -86,19 +86,20 @@ pub trait Scalar:
     /// Longest representable path, m.
     const LONGEST_PATH: f64;
     /// Words of a [`LagState`](Scalar::LagState) in a saved state.
-    const SLOW_WORDS: usize;
+    const LAG_STATE_WORDS: usize;
 
     /// Nearest value. Used when a muscle is built, never in a tick.
     fn from_f64(value: f64) -> Self;
     /// The value, exactly.
     fn to_f64(self) -> f64;
-    /// The word that [`from_bits`](Scalar::from_bits) turns into the same value.
+    /// The value as a word of a saved state.
     fn to_bits(self) -> Self::Bits;
-    /// The value saved as `bits`.
+    /// The value of a word from [`to_bits`](Scalar::to_bits).
     fn from_bits(bits: Self::Bits) -> Self;
     /// Whether it is finite.
     fn is_finite(self) -> bool;
-    /// Greatest value, at which fixed point saturates; infinity in floating point.
+    /// Whether it is the largest value: the limit of saturation in fixed point, infinity in
+    /// floating point.
     fn is_saturated(self) -> bool;
 
     /// The factor nearest to a constant. Used when a muscle is built.
@@ -114,20 +115,21 @@ pub trait Scalar:
     /// Product with a part; fixed point rounds to nearest.
     #[must_use]
     fn rounded_portion(self, part: Self::Part) -> Self;
-    /// The number, clamped to 0..1 in fixed point, to multiply with.
+    /// The number as a factor; clamped to 0..1 in fixed point.
     fn unit(self) -> Self::Unit;
-    /// Product with a number from 0 to 1; fixed point rounds toward minus infinity, to two ULP.
+    /// Product with a factor from 0 to 1; fixed point rounds toward minus infinity to a multiple of
+    /// two ULP.
     #[must_use]
     fn by(self, unit: Self::Unit) -> Self;
-    /// Quotient by a positive number; saturates.
+    /// `self` divided by a positive number; saturates.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
 
-    /// Half; fixed point rounds toward minus infinity.
+    /// Half of `self`; fixed point rounds toward minus infinity.
     #[must_use]
     fn half(self) -> Self;
-    /// Polynomials in `self` (-1..1); coefficients by powers, constant first. The sum of their
-    /// magnitudes is at most 100.
+    /// Polynomials in `self` (-1..1). Coefficients are in order of powers, constant first; the sum
+    /// of their magnitudes is at most 100.
     fn polynomials<const N: usize, const TERMS: usize>(
         self,
         terms: [&[Self; TERMS]; N],
@@ -141,29 +143,30 @@ pub trait Scalar:
     /// Quotients by positive numbers.
     #[must_use]
     fn ratios<const N: usize>(dividends: [Self; N], divisors: [Self; N]) -> [Self; N];
-    /// Reciprocal of a positive number, as a factor for several quotients.
+    /// Reciprocal of a positive number as a factor, for several quotients by the same divisor.
     fn reciprocal_factor(self) -> Self::Factor;
 
-    /// Exponential of `self`, at most 80; underflows to 0.
+    /// Exponential of `self`, which is at most 80; underflows to 0.
     #[must_use]
     fn exp(self) -> Self;
-    /// Natural logarithm of a positive number; of 0, that of about the least number.
+    /// Natural logarithm of a positive number; for 0, approximately that of the smallest positive
+    /// number.
     #[must_use]
     fn ln(self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
     fn softplus(self) -> (Self, Self::Unit);
-    /// `1 - exp(-exp(self))`, Weibull's distribution as a function of the logarithm.
+    /// `1 - exp(-exp(self))`, the Weibull distribution as a function of the logarithm.
     #[must_use]
     fn weibull(self) -> Self;
-    /// `1/(1 + factor self)` of each factor, whose denominators are positive.
+    /// `1/(1 + factor self)` for each factor; the denominators must be positive.
     #[must_use]
     fn reciprocals_of_one_plus<const N: usize>(self, factors: [Self; N]) -> [Self; N];
     /// Solves a force balance with a residual `self`, a line and a hyperbola: the root u of
-    /// `self` + `line` u + h(u) = 0, and how a velocity decays against its damping.
+    /// `self` + `line` u + h(u) = 0. Also returns the damping at the root relative to the inertia.
     ///
-    /// h(u) = `steepness` u/(1 + bend u) with half the curvature `half_curvature` at 0; the root is
-    /// on its branch through 0. `line` and `steepness` are positive. The damping is `viscosity` and
-    /// the hyperbola's secant, h(u)/u.
+    /// h(u) = `steepness` u/(1 + bend u), with half its curvature at 0 in `half_curvature`; the root
+    /// is on the branch through 0. `line` and `steepness` are positive. The damping is `viscosity`
+    /// plus the secant of the hyperbola, h(u)/u.
     fn hyperbola_root(
         self,
         line: Self,
@@ -176,12 +179,12 @@ pub trait Scalar:
     /// State of a lag with the value `self`.
     fn lag_state(self) -> Self::LagState;
     /// Value of the state of a lag.
-    fn of(slow: Self::LagState) -> Self;
-    /// State of a lag advanced by `difference` times `share`.
-    fn advanced(slow: Self::LagState, difference: Self, share: Self::Share) -> Self::LagState;
-    /// State of a lag advanced by the sum of two differences times their shares.
+    fn of(state: Self::LagState) -> Self;
+    /// State of a lag after adding `difference` times `share`.
+    fn advanced(state: Self::LagState, difference: Self, share: Self::Share) -> Self::LagState;
+    /// State of a lag after adding two differences times their shares.
     fn advanced_by_two(
-        slow: Self::LagState,
+        state: Self::LagState,
         first: (Self, Self::Share),
         second: (Self, Self::Share),
     ) -> Self::LagState;
@@ -193,8 +196,8 @@ pub trait Scalar:
     /// most 2.5.
     fn lags(self) -> [Lags<Self::Share>; 2];
     /// Words of the state of a lag.
-    fn lag_state_words(slow: Self::LagState) -> impl Iterator<Item = Self::Bits>;
-    /// State of a lag from the next words; none if there are too few.
+    fn lag_state_words(state: Self::LagState) -> impl Iterator<Item = Self::Bits>;
+    /// State of a lag from the next words; `None` if there are too few.
     fn lag_state_from_words(words: &mut impl Iterator<Item = Self::Bits>)
     -> Option<Self::LagState>;
 
@@ -214,7 +217,7 @@ pub trait Scalar:
     ) -> Self;
     /// Factor from numbers to path lengths: `metres` per 1.
     fn path_factor(metres: f64) -> Self::Factor;
-    /// A path that is longer by a number times a factor; saturates.
+    /// A path length plus a number times a factor; saturates.
     fn lengthened(path: Self::PathLength, by: Self, factor: &Self::Factor) -> Self::PathLength;
     /// The word of a path length.
     fn path_bits(path: Self::PathLength) -> Self::Bits;
@@ -250,7 +253,8 @@ pub trait Scalar:
     fn force_bits(force: Self::Force) -> Self::Bits;
     /// Force in N, exact or rounded to `f64`.
     fn newtons(force: Self::Force) -> f64;
-    /// The same for a muscle whose F0 is `newtons`, from the finer of `force` and `relative_force`.
+    /// Force in N for a muscle whose F0 is `newtons`, from the one of `force` and `relative_force`
+    /// that has the higher resolution.
     fn newtons_of(force: Self::Force, relative_force: Self, newtons: f64) -> f64;
 
     /// Minimum; `other` if `self` is NaN.
@@ -265,13 +269,13 @@ pub trait Scalar:
         if self > other { self } else { other }
     }
 
-    /// Whether it lies between 0 and `end`, of whichever sign that is.
+    /// Whether it lies between 0 and `end`, which can be negative.
     fn is_between_0_and(self, end: Self) -> bool;
 
-    /// Whether its sign is that of negative numbers; one bit tells.
+    /// Whether its sign bit is set.
     fn is_negative(self) -> bool;
 
-    /// `self` if its sign is the one asked for, else 0.
+    /// `self` if its sign bit is `negative`, otherwise 0.
     #[must_use]
     fn of_sign(self, negative: bool) -> Self;
 
@@ -285,13 +289,13 @@ pub trait Scalar:
 /// Step response of two lags in series after x time constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Lags<T> {
-    /// 1 - exp(-x), of either lag.
+    /// Response of the first lag, 1 - exp(-x).
     pub response: T,
-    /// x exp(-x), by which the second is behind the first.
+    /// Response of the first lag minus that of the second, x exp(-x).
     pub delayed: T,
 }
 
-/// The velocity at which forces are in balance, and what holds it there.
+/// Root of a force balance, and the damping there.
 #[derive(Clone, Copy, Debug)]
 pub struct Balance<S: Scalar> {
     /// The root.

@@ -31,7 +31,7 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 6 + N * (1 + S::SLOW_WORDS) + R::State::WORDS;
+    pub const WORDS: usize = 6 + N * (1 + S::LAG_STATE_WORDS) + R::State::WORDS;
     /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 

@@ -70,7 +70,7 @@ pub struct FatigueState<S: Scalar> {
 
 impl<S: Scalar> FatigueState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 1 + S::SLOW_WORDS;
+    pub const WORDS: usize = 1 + S::LAG_STATE_WORDS;
     /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 

@@ -84,7 +84,7 @@ pub struct EnvelopeState<S: Scalar, const D: usize> {
 
 impl<S: Scalar, const D: usize> EnvelopeState<S, D> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::SLOW_WORDS + D + 1;
+    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS + D + 1;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {

@@ -185,7 +185,8 @@ pub struct FesControllerState<S: Scalar> {
 }
 
 impl<S: Scalar> FesControllerState<S> {
-    const OWN: usize = 1 + 4 + 2 * S::SLOW_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
+    const OWN: usize =
+        1 + 4 + 2 * S::LAG_STATE_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
     /// Words of a saved state without fatigue; [`FesController::saved_words`] has those of a
     /// controller.
     pub const LEAST_SAVED_WORDS: usize = Self::OWN;

@@ -74,7 +74,7 @@ const MOST: f64 = 12.0;
 
 impl<S: Scalar> LeadState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::SLOW_WORDS;
+    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {

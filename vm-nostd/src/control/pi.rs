@@ -82,7 +82,7 @@ pub struct PiState<S: Scalar> {
 
 impl<S: Scalar> PiState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::SLOW_WORDS;
+    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {

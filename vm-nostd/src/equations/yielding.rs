@@ -102,7 +102,7 @@ impl<S: Scalar> Yielding<S> {
         }
         let at_mean = (-speed.mean.scaled(&self.per_velocity)).exp();
         let spread = speed.variance.scaled(&self.per_spread);
-        let kept = (at_mean + at_mean * spread).min(S::ONE);
-        self.lag.at_end(yielding, S::ONE - self.depth * (S::ONE - kept))
+        let mean_exponential = (at_mean + at_mean * spread).min(S::ONE);
+        self.lag.at_end(yielding, S::ONE - self.depth * (S::ONE - mean_exponential))
     }
 }

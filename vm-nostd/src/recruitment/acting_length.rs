@@ -90,7 +90,7 @@ summed!([S: Scalar] EffectiveLengthCoefficients<S> { rate, least_inactive, range
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
     type State = S::LagState;
     type Coefficients = EffectiveLengthCoefficients<S>;
-    const WORDS: usize = S::SLOW_WORDS;
+    const WORDS: usize = S::LAG_STATE_WORDS;
     const MODE: u32 = 4;
 
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {

@@ -134,10 +134,10 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         saved: &mut Saved<I>,
     ) -> Result<Self::State, RestoreError> {
         let mut state = self.at_rest(fibers);
-        for (kept, unit) in state.units.iter_mut().zip(&self.units) {
+        for (unit_state, unit) in state.units.iter_mut().zip(&self.units) {
             let frequencies = Range { least: S::ZERO, most: unit.firing.frequency(S::ONE) };
             let levels = fibers.get(unit.fiber).map_or(share(), |fiber| fiber.sag.range());
-            *kept = UnitState {
+            *unit_state = UnitState {
                 intermediate_frequency: saved.lag_state(&frequencies)?,
                 effective_frequency: saved.lag_state(&frequencies)?,
                 sag: saved.lag_state(&levels)?,
@@ -159,7 +159,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             moment.reciprocal,
         );
         let mut activations = [S::ZERO; N];
-        for (kept, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
+        for (unit_state, unit) in state.units.iter_mut().zip(&self.units).take(self.count) {
             let of_type = fibers.get(unit.fiber).zip(curves.get(unit.fiber));
             let yieldings = moment.yieldings.get(unit.fiber);
             let Some((((fiber, curve), yieldings), sum)) =
@@ -168,22 +168,22 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 continue;
             };
             let drive = unit.firing.frequency(moment.input.activation);
-            let before = kept.effective_frequency;
+            let before = unit_state.effective_frequency;
             let input = ExcitationInput {
                 excitation: &fiber.excitation,
-                intermediate: kept.intermediate_frequency,
+                intermediate: unit_state.intermediate_frequency,
                 effective: before,
                 drive,
                 frequency: drive,
-                slowing: kept.activity.predicted,
+                slowing: unit_state.activity.predicted,
             };
             let [excited] = excitation::advance([input], moment.fascicle_length, moment.reciprocal);
-            kept.intermediate_frequency = excited.intermediate;
-            kept.effective_frequency = excited.effective;
+            unit_state.intermediate_frequency = excited.intermediate;
+            unit_state.effective_frequency = excited.effective;
             let acting_length = A::advance(
                 &unit.acting_length,
-                &mut kept.acting_length,
-                kept.activity.predicted,
+                &mut unit_state.acting_length,
+                unit_state.activity.predicted,
                 moment,
             );
             let [curve] = match acting_length {
@@ -191,10 +191,10 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 None => [*curve],
             };
             let firing = share_above(S::of(before), S::of(excited.effective), self.firing);
-            let sag = advance_sag(fiber, &mut kept.sag, firing);
+            let sag = advance_sag(fiber, &mut unit_state.sag, firing);
             let frequency = excited.effective_at_middle * (*yieldings * sag);
             let activation = curve.at(frequency);
-            kept.activity = kept.activity.next(activation);
+            unit_state.activity = unit_state.activity.next(activation);
             *sum = *sum + unit.share * activation;
         }
         activations.map(|activation| Recruited {
@@ -209,7 +209,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
     for DiscreteState<S, A, UNITS>
 {
-    const WORDS: usize = UNITS * (Activity::<S>::WORDS + 3 * S::SLOW_WORDS + A::WORDS);
+    const WORDS: usize = UNITS * (Activity::<S>::WORDS + 3 * S::LAG_STATE_WORDS + A::WORDS);
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         self.units.into_iter().flat_map(|unit| {

@@ -70,7 +70,7 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
 }
 
 impl<S: Scalar, const N: usize> RecruitmentState<S> for LumpedState<S, N> {
-    const WORDS: usize = S::SLOW_WORDS + N * (Activity::<S>::WORDS + 3 * S::SLOW_WORDS);
+    const WORDS: usize = S::LAG_STATE_WORDS + N * (Activity::<S>::WORDS + 3 * S::LAG_STATE_WORDS);
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         let units = self.fibers.into_iter().zip(self.activities);

@@ -1,8 +1,8 @@
-//! A path that is rarely taken.
+//! Hint for branches that are rarely taken.
 
-/// Marks the branch it is called in as rarely taken, so that the other one is laid out straight.
+/// Marks the branch that calls it as rarely taken: the compiler moves it out of the hot path.
 ///
-/// `core::hint::cold_path` does so since Rust 1.95; this crate builds with older compilers.
+/// `core::hint::cold_path` does the same since Rust 1.95; this crate supports older compilers.
 #[cold]
 #[inline]
 pub(crate) const fn cold_path() {}

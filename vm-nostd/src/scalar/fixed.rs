@@ -1,7 +1,7 @@
 //! Fixed point: Q8.24, and Q8.56 for the state of lags.
 
 #[cfg(test)]
-mod every;
+mod exhaustive;
 mod exponential;
 mod factor;
 mod mantissa;
@@ -37,7 +37,7 @@ const LAG_SHIFT: u32 = 32;
 
 impl Sealed for Fixed {}
 
-/// Implements [`Summed`] for numbers of 32 bits.
+/// Implements [`Summed`] for 32-bit numbers.
 macro_rules! summed_bits {
     ($($number:ty),*) => {
         $(impl Summed for $number {
@@ -77,7 +77,7 @@ impl Scalar for Fixed {
     const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
     const FORCE_STEP: f64 = 1e-3;
     const LONGEST_PATH: f64 = 4.19;
-    const SLOW_WORDS: usize = 2;
+    const LAG_STATE_WORDS: usize = 2;
 
     fn from_f64(value: f64) -> Self {
         Self::from_bits(nearest(value * UNITS))
@@ -132,7 +132,7 @@ impl Scalar for Fixed {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        // One's complement of negative values, without a branch: one ULP short.
+        // Without a branch, and saturating for the least number.
         let sign = self.to_bits() >> 31;
         Self::from_bits((self.to_bits() ^ sign).saturating_sub(sign))
     }
@@ -235,16 +235,16 @@ impl Scalar for Fixed {
     fn lag_state(self) -> i64 {
         i64::from(self.to_bits()) << LAG_SHIFT
     }
-    fn of(slow: i64) -> Self {
-        let (whole, half) = ((slow >> LAG_SHIFT) as i32, (slow as u32 >> (LAG_SHIFT - 1)) as i32);
+    fn of(state: i64) -> Self {
+        let (whole, half) = ((state >> LAG_SHIFT) as i32, (state as u32 >> (LAG_SHIFT - 1)) as i32);
         Self::from_bits(whole.saturating_add(half))
     }
-    fn advanced(slow: i64, difference: Self, share: u32) -> i64 {
+    fn advanced(state: i64, difference: Self, share: u32) -> i64 {
         // The result lies between two representable numbers, even if an intermediate sum wraps.
-        slow.wrapping_add(product::mixed(difference.to_bits(), share))
+        state.wrapping_add(product::mixed(difference.to_bits(), share))
     }
-    fn advanced_by_two(slow: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
-        Self::advanced(Self::advanced(slow, first.0, first.1), second.0, second.1)
+    fn advanced_by_two(state: i64, first: (Self, u32), second: (Self, u32)) -> i64 {
+        Self::advanced(Self::advanced(state, first.0, first.1), second.0, second.1)
     }
     fn share(value: f64) -> u32 {
         (value * 4_294_967_296.0 + 0.5) as u32
@@ -252,21 +252,22 @@ impl Scalar for Fixed {
     fn lag_response(self) -> u32 {
         u32::MAX - exponential::decay(self.to_bits())
     }
-    /// Each within 2^-24: halving x may cut off half an ULP, which is squared.
+    /// The error of each is below 2^-24; most of it is from halving x, which can truncate half an
+    /// ULP.
     #[inline(always)]
     fn lags(self) -> [Lags<u32>; 2] {
         let x = self.to_bits().max(0);
-        let left_at_half = exponential::decay(x >> 1);
-        let left = (product::unsigned(left_at_half, left_at_half) >> 32) as u32;
+        let decay_at_half = exponential::decay(x >> 1);
+        let decay = (product::unsigned(decay_at_half, decay_at_half) >> 32) as u32;
         // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
-        let delayed = |left: u32, shift: u32| (product::unsigned(x as u32, left) >> shift) as u32;
+        let delayed = |decay: u32, shift: u32| (product::unsigned(x as u32, decay) >> shift) as u32;
         [
-            Lags { response: u32::MAX - left_at_half, delayed: delayed(left_at_half, 25) },
-            Lags { response: u32::MAX - left, delayed: delayed(left, 24) },
+            Lags { response: u32::MAX - decay_at_half, delayed: delayed(decay_at_half, 25) },
+            Lags { response: u32::MAX - decay, delayed: delayed(decay, 24) },
         ]
     }
-    fn lag_state_words(slow: i64) -> impl Iterator<Item = u32> {
-        [slow as u32, (slow >> 32) as u32].into_iter()
+    fn lag_state_words(state: i64) -> impl Iterator<Item = u32> {
+        [state as u32, (state >> 32) as u32].into_iter()
     }
     fn lag_state_from_words(words: &mut impl Iterator<Item = u32>) -> Option<i64> {
         let low = i64::from(words.next()?);
@@ -337,7 +338,7 @@ impl Scalar for Fixed {
         Self::from_bits(per_newton.times(force))
     }
     fn of_share(self, force: i32) -> i32 {
-        number::whole(number::exact(self.to_bits(), force), number::FRACTION)
+        number::saturating_shift(number::exact(self.to_bits(), force), number::FRACTION)
     }
     fn force_bits(force: i32) -> u32 {
         force as u32
@@ -355,7 +356,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn responses_of_two_lags_are_within_an_ulp() {
+    fn responses_of_two_lags_are_within_one_ulp() {
         for bits in (0..=40 << 20).step_by(37) {
             let x = f64::from(bits) / UNITS;
             for (lags, x) in Fixed::from_bits(bits).lags().into_iter().zip([0.5 * x, x]) {

@@ -6,7 +6,7 @@ mod single;
 use super::sealed::Sealed;
 use super::{Balance, Lags, Scalar};
 
-/// In `f64`, for computations when a muscle is built.
+/// `f64` functions that are used when a muscle is built.
 pub(crate) use double::{one_minus_exp, square_root, tangent};
 
 macro_rules! float {
@@ -35,7 +35,7 @@ macro_rules! float {
             const MAXIMAL_FORCES: (f64, f64) = (0.0, f64::MAX);
             const FORCE_STEP: f64 = 0.0;
             const LONGEST_PATH: f64 = f64::MAX;
-            const SLOW_WORDS: usize = 1;
+            const LAG_STATE_WORDS: usize = 1;
 
             fn from_f64(value: f64) -> Self {
                 value as Self
@@ -112,8 +112,8 @@ macro_rules! float {
                 }
                 ratios
             }
-            /// One division for all: each reciprocal is that of the product of all, times the
-            /// others.
+            /// One division for all: each reciprocal is the reciprocal of the product of all
+            /// numbers, times the product of the others.
             #[inline(always)]
             fn reciprocals<const N: usize>(numbers: [Self; N]) -> [Self; N] {
                 let mut product = 1.0;
@@ -171,28 +171,30 @@ macro_rules! float {
                 inertia: Self,
                 viscosity: Self,
             ) -> Balance<Self> {
-                // Times steepness² (1 + bend u) it is quadratic; bend = -half_curvature/steepness.
-                let straight = steepness * line;
+                // The balance times steepness (1 + bend u) is quadratic in u, with
+                // bend = -half_curvature/steepness.
+                let line_product = steepness * line;
                 let square = steepness * steepness;
-                let bent = self * half_curvature;
-                let linear = straight + square - bent;
-                // linear² + 4 straight bent, as a sum of positive terms.
-                let difference = straight + bent - square;
-                let discriminant = difference * difference + 4.0 * straight * square;
+                let curvature_product = self * half_curvature;
+                let linear = line_product + square - curvature_product;
+                // linear² + 4 line_product curvature_product, written as a sum of positive terms.
+                let difference = line_product + curvature_product - square;
+                let discriminant = difference * difference + 4.0 * line_product * square;
                 let root = $kernels::square_root(discriminant);
-                // The root is more than |difference|: neither sum is below its product but by the
-                // rounding of its terms, which is less than that excess.
-                let whole = linear + root;
-                let after = whole + 2.0 * bent;
-                // The secant is steepness whole/after. One division for both quotients.
-                let damping = viscosity * after + steepness * whole;
-                let all = inertia * after + damping;
-                let reciprocal = 1.0 / (whole * all);
-                let per_all = whole * reciprocal;
+                // The root exceeds |difference| by more than the rounding errors: both denominators
+                // are positive.
+                let denominator = linear + root;
+                let secant_denominator = denominator + 2.0 * curvature_product;
+                // The secant is steepness denominator/secant_denominator. Both quotients share one
+                // division.
+                let damping = viscosity * secant_denominator + steepness * denominator;
+                let total = inertia * secant_denominator + damping;
+                let reciprocal = 1.0 / (denominator * total);
+                let per_total = denominator * reciprocal;
                 Balance {
-                    root: -2.0 * self * steepness * (all * reciprocal),
-                    damped: damping * per_all,
-                    reciprocal: after * per_all,
+                    root: -2.0 * self * steepness * (total * reciprocal),
+                    damped: damping * per_total,
+                    reciprocal: secant_denominator * per_total,
                 }
             }
 
@@ -202,15 +204,15 @@ macro_rules! float {
             fn lag_state(self) -> Self {
                 self
             }
-            fn of(slow: Self) -> Self {
-                slow
+            fn of(state: Self) -> Self {
+                state
             }
-            fn advanced(slow: Self, difference: Self, share: Self) -> Self {
-                slow + difference * share
+            fn advanced(state: Self, difference: Self, share: Self) -> Self {
+                state + difference * share
             }
-            fn advanced_by_two(slow: Self, first: (Self, Self), second: (Self, Self)) -> Self {
-                // Compares changes: those of a slow lag are far below the ULP of its value.
-                slow + (first.0 * first.1 + second.0 * second.1)
+            fn advanced_by_two(state: Self, first: (Self, Self), second: (Self, Self)) -> Self {
+                // Adds the changes first: those of a slow lag are far below the ULP of its value.
+                state + (first.0 * first.1 + second.0 * second.1)
             }
             fn share(value: f64) -> Self {
                 value as Self
@@ -218,7 +220,7 @@ macro_rules! float {
             fn lag_response(self) -> Self {
                 $kernels::one_minus_exp(self)
             }
-            /// In `f32` each within 3e-6 of its value.
+            /// In `f32` the relative error of each is below 3e-6.
             #[inline(always)]
             fn lags(self) -> [Lags<Self>; 2] {
                 let half = self * 0.5;
@@ -229,8 +231,8 @@ macro_rules! float {
                     Lags { response, delayed: self * (1.0 - response) },
                 ]
             }
-            fn lag_state_words(slow: Self) -> impl Iterator<Item = Self::Bits> {
-                core::iter::once(slow.to_bits())
+            fn lag_state_words(state: Self) -> impl Iterator<Item = Self::Bits> {
+                core::iter::once(state.to_bits())
             }
             fn lag_state_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
                 words.next().map(<$float>::from_bits)
@@ -321,8 +323,8 @@ float!(f64, u64, double, 2);
 mod tests {
     use super::*;
 
-    /// Calls `check` with a residual, a line, a steepness and half a curvature, over the ranges of
-    /// valid muscles.
+    /// Calls `check` with residual, line, steepness and half_curvature over the ranges of valid
+    /// muscles.
     fn over_balances(check: impl Fn(f64, f64, f64, f64)) {
         for line in [2e-3, 0.05, 1.0, 50.0] {
             for steepness in [1e-5, 0.02, 1.0, 30.0] {
@@ -345,8 +347,8 @@ mod tests {
             let below = 1.0 - half_curvature / steepness * root;
             assert!(below > 0.0, "{residual} {line} {steepness} {half_curvature}: {root}");
             let secant = steepness / below;
-            let left = residual + line * root + secant * root;
-            assert!(left.abs() <= 1e-6 * residual.abs(), "{root}: {left} of {residual}");
+            let error = residual + line * root + secant * root;
+            assert!(error.abs() <= 1e-6 * residual.abs(), "{root}: {error} of {residual}");
             let damping = viscosity + secant;
             assert!((found.reciprocal * (inertia + damping) - 1.0).abs() < 1e-4, "{found:?}");
             assert!((found.damped - damping / (inertia + damping)).abs() < 1e-4, "{found:?}");
@@ -360,9 +362,9 @@ mod tests {
             let found = r.hyperbola_root(l, s, h, 0.3, 0.01);
             let [r, l, s, h] = [r, l, s, h].map(f64::from);
             let exact = r.hyperbola_root(l, s, h, f64::from(0.3_f32), f64::from(0.01_f32));
-            // The square root is up to 5e-5 too large. Next to a large product the line's term is
-            // rounded, and in the secant the steepness': if the least steepness stands for 0, few
-            // of its bits remain.
+            // The square root is up to 5e-5 too large. Bits are lost to cancellation where one
+            // product is much larger than the line product (in the root) or than the square of the
+            // steepness (in the secant), most if the steepness is at its lower bound.
             let bent = (r * h).abs();
             let most = s * l + s * s + bent;
             let of_root = 1.1e-4 * most / (s * l);
@@ -381,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn no_balance_of_hostile_numbers_is_undefined() {
+    fn balances_of_extreme_numbers_are_finite() {
         let any = [0.0, 1e-30, 1e-8, 1e-3, 1.0, 30.0, 1e4, 1e7_f32];
         for residual in any.into_iter().flat_map(|x| [x, -x]) {
             for half_curvature in any.into_iter().flat_map(|x| [x, -x]) {

@@ -1,7 +1,7 @@
-//! `const` elementary functions for tables, accurate to the last few bits of `f64`. Never used in a
+//! `const` elementary functions for tables, accurate to the last few bits of `f64`. Not used in a
 //! tick.
 
-/// e^x for -100 <= x <= 100, within 3e-13 of its value.
+/// e^x for -100 <= x <= 100; the relative error is below 3e-13.
 pub(super) const fn exp(x: f64) -> f64 {
     // e^x = (e^(x/256))^256; the series converges fast for |x| < 1/2.
     let y = x / 256.0;

@@ -24,19 +24,20 @@ static POWERS_OF_TWO: [u32; POWERS] = {
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
 
-/// e^x as a mantissa in Q1.31 and a power of two.
+/// e^x as a mantissa in Q1.31 and the exponent of a power of two.
 ///
 /// # Scaling and overflow
-/// x log2 e is below 185 and held in Q10.54. Of its fraction, five bits choose the table's entry
-/// and the rest, less half a step, is y = (..) ln 2, |y| < 2^-6.5: the series y + y²/2 + y³/6,
-/// to y⁴/24 < 2^-30, is below 2^26 in Q0.32 and its product with half the entry below 2^25. The
-/// mantissa, from 1 to 2, may come out as 1 less a rounding.
+/// x log2 e is below 185 in magnitude and held in Q10.54. The first five bits of its fraction are
+/// the index into the table. The rest, minus half a step, times ln 2 is y, |y| < 2^-6.5. The series
+/// y + y²/2 + y³/6 has a truncation error of y⁴/24 < 2^-30; it is below 2^26 in Q0.32, and its
+/// product with half the entry below 2^25. The mantissa is 1 to 2; rounding can make it slightly
+/// less than 1.
 fn parts(x: i32) -> (u32, i32) {
     let (twos, low) = exact(x, LOG2_E);
     let fraction = ((twos as u32) << 10) | (low >> 22);
     let index = (fraction >> (32 - POWER_BITS)) as usize;
     let rest = fraction << POWER_BITS >> POWER_BITS;
-    // ln 2 in Q0.31, and twice that is what the high word is short of.
+    // ln 2 in Q0.31; the other factor is doubled to compensate.
     const LN_2: i32 = 1_488_522_236;
     let y = high((rest as i32 - (1 << (31 - POWER_BITS))) << 1, LN_2);
     // 1/6 in Q0.32.
@@ -48,27 +49,26 @@ fn parts(x: i32) -> (u32, i32) {
     (entry.wrapping_add(more as u32), twos >> 22)
 }
 
-/// A mantissa shifted right, rounded; 0 beyond 32 bits.
+/// A mantissa shifted right, rounded; 0 for shifts above 32.
 fn shifted(mantissa: u32, shift: u32) -> u32 {
     if shift <= 32 { ((mantissa >> (shift - 1)) + 1) >> 1 } else { 0 }
 }
 
-/// e^x in Q8.24, saturated; within 1 unit and 2^-28 of its value.
+/// e^x in Q8.24, saturated; the error is below 1 unit plus 2^-28 of the value.
 ///
 /// # Scaling and overflow
-/// Exponents run from -185 to 184. A mantissa in Q1.31 becomes Q8.24 by a shift of 7 to the right,
-/// less the exponent: of 0 bits at an exponent of 7 and more, where it saturates, and of more
-/// than 32 below -25, where nothing is left.
+/// Exponents are -185 to 184. The mantissa in Q1.31 is shifted right by 7 - exponent to Q8.24. From
+/// an exponent of 7 on the result saturates; below -25 the shift exceeds 32 and the result is 0.
 pub(super) fn exp(x: i32) -> i32 {
     let (mantissa, exponent) = parts(x);
     if exponent >= 7 { i32::MAX } else { shifted(mantissa, (7 - exponent) as u32) as i32 }
 }
 
-/// e^-x in Q0.32 for x >= 0, below 1 by at least a unit; within 8 units.
+/// e^-x in Q0.32 for x >= 0, clamped to one unit below 1; the error is below 8 units.
 ///
 /// # Scaling and overflow
-/// The exponent of a number below 1 is negative: the shift of the Q1.31 mantissa is 0 or to the
-/// right. For x = 0 it would be 2^32 and is a unit less.
+/// For x > 0 the exponent is negative: the Q1.31 mantissa is shifted right by 0 or more. For x = 0
+/// the result would be 2^32 and is clamped to 2^32 - 1.
 #[inline(always)]
 pub(super) fn decay(x: i32) -> u32 {
     let (mantissa, exponent) = parts(-x.max(0));
@@ -81,12 +81,12 @@ pub(super) fn decay(x: i32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::{UNIT, worst_between};
+    use super::super::exhaustive::{UNIT, largest_error_between};
     use super::*;
 
     #[test]
     fn exp_is_within_an_ulp_or_saturates() {
-        let found = worst_between(-18, 5, |x| {
+        let found = largest_error_between(-18, 5, |x| {
             let exact = (f64::from(x) / UNIT).exp() * UNIT;
             let saturated = exact.min(f64::from(i32::MAX));
             (f64::from(exp(x)) - saturated).abs() / (1.0 + saturated * 2_f64.powi(-28))
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn all_decays_are_within_8_ulp() {
-        let found = worst_between(0, 23, |x| {
+        let found = largest_error_between(0, 23, |x| {
             let exact = (-f64::from(x.max(0)) / UNIT).exp() * 4_294_967_296.0;
             (f64::from(decay(x)) - exact).abs()
         });

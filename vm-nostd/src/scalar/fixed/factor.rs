@@ -1,9 +1,10 @@
 //! Constant factors of any magnitude.
 
-use super::number::{exact, whole};
+use super::number::{exact, saturating_shift};
 use crate::checksum::summed;
 
-/// A constant factor of any magnitude: mantissa × 2^-shift, in units of the result per unit.
+/// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer multiples of
+/// their ULP ("units").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Factor {
     mantissa: i32,
@@ -14,7 +15,7 @@ pub struct Factor {
 summed!([] Factor { mantissa, shift });
 
 impl Factor {
-    /// The nearest factor; its mantissa has 31 bits, unless it is below 2^-32.
+    /// The nearest factor. The mantissa has 31 bits for factors of at least 2^-32, fewer below.
     pub(super) fn new(value: f64) -> Self {
         const TWO_30: f64 = (1 << 30) as f64;
         let (mut mantissa, mut shift) = (value * TWO_30 * 2.0, 31);
@@ -29,30 +30,31 @@ impl Factor {
         Self { mantissa: nearest(mantissa), shift }
     }
 
-    /// A mantissa × 2^-shift, 1 to 62.
+    /// The factor mantissa × 2^-shift; `shift` is 1 to 62.
     #[inline(always)]
     pub(super) fn scaled_down(mantissa: i32, shift: u32) -> Self {
         Self { mantissa, shift: shift as u8 }
     }
 
-    /// Units times the factor, rounded, within 0.51 units and 2^-31 of the product (of a factor
-    /// below 2^-32, half its mantissa's last bit); saturated. It rounds to nearest because
-    /// truncation of lengths in every tick would make the fascicles drift.
+    /// Units times the factor, saturated. The error is below 0.51 units plus 2^-31 of the product
+    /// (for factors below 2^-32: plus half the last bit of the mantissa). It rounds to nearest,
+    /// because truncated lengths would make the fascicles drift.
     ///
     /// # Scaling and overflow
-    /// Of a factor below 1/2, all of the product's low word is shifted out, and its high word, at
-    /// most 2^30, can take half a unit more.
+    /// If the shift is above 32, the low word of the product is shifted out. The high word is at
+    /// most 2^30, so that adding half a unit does not overflow.
     #[inline(always)]
     pub(super) fn times(self, units: i32) -> i32 {
         let product = exact(units, self.mantissa);
         match u32::from(self.shift) {
             shift @ 33.. => ((product.0 >> (shift - 33)) + 1) >> 1,
-            shift => whole(product, shift).saturating_add((product.1 >> (shift - 1) & 1) as i32),
+            shift => saturating_shift(product, shift)
+                .saturating_add((product.1 >> (shift - 1) & 1) as i32),
         }
     }
 }
 
-/// Nearest whole number, saturated.
+/// Nearest integer, saturated.
 pub(super) fn nearest(value: f64) -> i32 {
     // Adding a half and truncating rounds positive values; `as` saturates.
     (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
@@ -72,7 +74,7 @@ mod tests {
                     let exact = f64::from(units) * value;
                     let expected = exact.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
                     let error = (f64::from(factor.times(units)) - expected).abs();
-                    // Half a unit of the mantissa, which has 31 bits down to 2^-32.
+                    // Half the last bit of the mantissa, which has 31 bits down to 2^-32.
                     let relative = 2_f64.powi(-31).max(2_f64.powi(-63 - exponent));
                     let bound = 0.51 + expected.abs() * relative;
                     assert!(error <= bound, "{units} x {value:e}: {error} > {bound}");

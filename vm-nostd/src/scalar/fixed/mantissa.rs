@@ -1,6 +1,6 @@
 //! Logarithm and reciprocal of mantissas: 1 <= m < 2 in Q1.31.
 //!
-//! Both use the table of c = 1/m at the midpoints of 64 intervals, then a series in r = m c - 1,
+//! Both use a table of c = 1/m at the midpoints of 64 intervals, and a series in r = m c - 1,
 //! |r| < 1/128.
 
 use super::number::{high, square};
@@ -11,7 +11,7 @@ use crate::scalar::series;
 const INDEX_BITS: u32 = 6;
 const ENTRIES: usize = 1 << INDEX_BITS;
 
-/// 1/m at the middle of each 64th of 1..2, Q0.32.
+/// 1/m at the midpoint of each 64th of 1..2, Q0.32.
 static RECIPROCALS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = 0;
@@ -39,11 +39,11 @@ static LOGARITHMS: [i32; ENTRIES] = {
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = 2 * ENTRIES * size_of::<u32>();
 
-/// The table's index for `m`, its entry c, and r = m c - 1 in Q0.32.
+/// The index of `m` in the tables, the reciprocal c there, and r = m c - 1 in Q0.32.
 ///
 /// # Scaling and overflow
-/// m is Q1.31 and c Q0.32: their product Q1.63 is 1 within 1/128. Its 1 is bit 63 and falls out of
-/// the 32 bits from bit 31 on, which leaves r: below 2^25 + 1 in magnitude.
+/// m is Q1.31 and c Q0.32; their product, Q1.63, is within 1/128 of 1. The 1 is bit 63 and is
+/// dropped by taking the 32 bits from bit 31 on, which are r: below 2^25 + 1 in magnitude.
 #[inline(always)]
 fn reduced(m: u32) -> (usize, u32, i32) {
     let index = ((m >> (31 - INDEX_BITS)) & (ENTRIES as u32 - 1)) as usize;
@@ -52,12 +52,13 @@ fn reduced(m: u32) -> (usize, u32, i32) {
     (index, c, (product >> 31) as u32 as i32)
 }
 
-/// 1/m in Q1.31, 2^30 to 2^31, for m in Q1.31 with its first bit set; within 3 units.
+/// 1/m in Q1.31, 2^30 to 2^31, for m in Q1.31 with its first bit set; the error is below 3 units.
 ///
 /// # Scaling and overflow
-/// c (1 - r + r² - r³ + r⁴) is c/(1 + r) to r⁵ < 2^-35; for r⁴, of at most 2^-28, r² times the
-/// greatest r² does to a quarter of that. What is beyond 1 is below 2^26 in Q0.32, and its product
-/// with c/2, in Q0.31, below 2^25 of either sign: the sum does not wrap around.
+/// c (1 - r + r² - r³ + r⁴) is c/(1 + r) with a truncation error of r⁵ < 2^-35. r⁴, at most 2^-28,
+/// is approximated by r² 2^-14; the error is at most a quarter of that. The series without its 1 is
+/// below 2^26 in Q0.32, and its product with c/2 in Q0.31 below 2^25 in magnitude: the sum does not
+/// wrap around.
 #[inline(always)]
 pub(super) fn reciprocal(m: u32) -> u32 {
     let (_, c, r) = reduced(m);
@@ -67,25 +68,27 @@ pub(super) fn reciprocal(m: u32) -> u32 {
     (half as u32).wrapping_add_signed(high(half, beyond))
 }
 
-/// The same of several mantissas by one reciprocal, that of their product; within 8 units of two.
+/// [`reciprocal`] of several mantissas from one reciprocal, that of their product; for two the
+/// error is below 8 units.
 ///
 /// # Scaling and overflow
-/// The product of two mantissas is a mantissa, or twice one: its high word in Q1.31 is shifted left
-/// by 0 or 1 bit. Its reciprocal times either, shifted by as much, is the reciprocal of the other.
+/// The product of two mantissas is 1 to 4: its high word is shifted left by 0 or 1 bit to make it a
+/// mantissa. The reciprocal of the product times one mantissa, shifted by the same amount, is the
+/// reciprocal of the other.
 #[inline(always)]
 pub(super) fn reciprocals<const N: usize>(mantissas: [u32; N]) -> [u32; N] {
     let mut products = mantissas;
-    let mut shorts = [0; N];
+    let mut shifts = [0; N];
     for index in 1..N {
         let product = upper(products[index - 1], mantissas[index]);
-        shorts[index] = 1 - (product >> 31);
-        products[index] = product << shorts[index];
+        shifts[index] = 1 - (product >> 31);
+        products[index] = product << shifts[index];
     }
     let mut found = mantissas;
     let mut rest = products.last().map_or(0, |&product| reciprocal(product));
     for index in (1..N).rev() {
-        found[index] = upper(rest, products[index - 1]) << shorts[index];
-        rest = upper(rest, mantissas[index]) << shorts[index];
+        found[index] = upper(rest, products[index - 1]) << shifts[index];
+        rest = upper(rest, mantissas[index]) << shifts[index];
     }
     if let Some(first) = found.first_mut() {
         *first = rest;
@@ -102,12 +105,13 @@ fn upper(a: u32, b: u32) -> u32 {
 /// ln 2 in Q1.31.
 const LN_2: i32 = 1_488_522_236;
 
-/// ln x in Q8.24 of a positive number, within 1 ULP; of 0 and below, that of one ULP.
+/// ln x in Q8.24 of a positive number, within 1 ULP. For 0 and negative numbers it is the logarithm
+/// of one ULP.
 ///
 /// # Scaling and overflow
-/// x is shifted left until its first bit is set; the power of two taken out is -24 to 6. The
-/// mantissa's logarithm c + r - r²/2 + r³/3, to r⁴/4 < 2^-30, is below 0.7 in Q1.31. The sum, below
-/// 17, has 36 bits of 64.
+/// x is shifted left until its first bit is set; the exponent is -24 to 6. The logarithm of the
+/// mantissa, -ln c + r - r²/2 + r³/3 with a truncation error of r⁴/4 < 2^-30, is below 0.7 in
+/// Q1.31. The sum is below 17 in magnitude and has 36 of 64 bits.
 pub(super) fn ln(x: i32) -> i32 {
     let x = x.max(1) as u32;
     let zeros = x.leading_zeros();
@@ -122,12 +126,12 @@ pub(super) fn ln(x: i32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::{UNIT, worst};
+    use super::super::exhaustive::{UNIT, largest_error};
     use super::*;
 
     #[test]
-    fn reciprocals_of_all_mantissas_are_within_three_ulp() {
-        let found = worst(1 << 31, u32::MAX.into(), |m| {
+    fn reciprocals_of_all_mantissas_are_within_three_units() {
+        let found = largest_error(1 << 31, u32::MAX.into(), |m| {
             let found = reciprocal(m as u32);
             let error = (f64::from(found) - 2_f64.powi(62) / m as f64).abs();
             if found <= 1 << 31 { error } else { f64::NAN }
@@ -136,9 +140,11 @@ mod tests {
     }
 
     #[test]
-    fn reciprocals_by_one_are_within_eight_ulp() {
-        let numbers: Vec<u32> =
-            super::super::every::of_any_length().map(|m| m as u32 | (1 << 31)).take(1000).collect();
+    fn reciprocals_of_two_mantissas_are_within_eight_units() {
+        let numbers: Vec<u32> = super::super::exhaustive::random_numbers()
+            .map(|m| m as u32 | (1 << 31))
+            .take(1000)
+            .collect();
         for m in numbers.iter().flat_map(|a| numbers.iter().map(|b| [*a, *b])) {
             for (found, m) in reciprocals(m).into_iter().zip(m) {
                 let error = f64::from(found) - 2_f64.powi(62) / f64::from(m);
@@ -149,7 +155,7 @@ mod tests {
 
     #[test]
     fn ln_of_all_positive_numbers_is_within_an_ulp() {
-        let found = worst(1, i32::MAX.into(), |x| {
+        let found = largest_error(1, i32::MAX.into(), |x| {
             (f64::from(ln(x as i32)) - (x as f64 / UNIT).ln() * UNIT).abs()
         });
         assert!(found <= 1.0, "{found} units");

@@ -1,4 +1,4 @@
-//! Numbers from -1/2 to 1/2, products with which take one instruction (SMMUL) and cannot overflow.
+//! Factors from -1/2 to 1/2: a product takes one instruction (SMMUL) and cannot overflow.
 
 use super::factor::nearest;
 use super::number::high;
@@ -19,7 +19,7 @@ impl Summed for Part {
 impl Part {
     pub(super) const MINUS_HALF: Self = Self(i32::MIN);
 
-    /// The nearest; 1/2 itself would be 2^31 and is a unit less.
+    /// The nearest number. 1/2 would be 2^31 and is clamped to 2^31 - 1.
     pub(super) fn new(value: f64) -> Self {
         Self(nearest(value * 4_294_967_296.0))
     }
@@ -30,10 +30,10 @@ impl Part {
         high(number, self.0)
     }
 
-    /// The same, rounded to nearest.
+    /// Product with a number in any format, rounded to nearest.
     ///
     /// # Scaling and overflow
-    /// The product is at most 2^62: half a unit of its high word does not overflow.
+    /// The product is at most 2^62: adding half a unit of its high word does not overflow.
     #[inline(always)]
     pub(super) fn rounded_of(self, number: i32) -> i32 {
         ((product::signed(number, self.0) + (1 << 31)) >> 32) as i32
@@ -42,7 +42,8 @@ impl Part {
 
 impl Add for Part {
     type Output = Self;
-    /// Wraps around where the sum is 1/2, at the end of a tick, where nothing is taken of it.
+    /// A sum of 1/2 wraps around. It occurs only for the time at the end of a tick, which is not
+    /// used.
     #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
@@ -59,10 +60,10 @@ mod tests {
             let part = Part::new(value);
             for number in [0, 1, -1, 12_345, -7_654_321, 1 << 24, i32::MAX, i32::MIN] {
                 let exact = f64::from(number) * value;
-                let left = exact - f64::from(part.of(number));
-                assert!((-0.5..1.5).contains(&left), "{number} x {value}: {left}");
-                let left = exact - f64::from(part.rounded_of(number));
-                assert!(left.abs() <= 1.0, "{number} x {value}: {left}");
+                let error = exact - f64::from(part.of(number));
+                assert!((-0.5..1.5).contains(&error), "{number} x {value}: {error}");
+                let error = exact - f64::from(part.rounded_of(number));
+                assert!(error.abs() <= 1.0, "{number} x {value}: {error}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Softplus and Weibull's distribution: cubic interpolation between compile-time nodes.
+//! Softplus and the Weibull distribution: cubic interpolation between compile-time nodes.
 
 use super::number::high;
 use super::unit::Unit;
@@ -17,19 +17,19 @@ const fn node(value: f64, slope: f64) -> Node {
     ((value * UNITS + 0.5) as i32, (slope * UNITS / (1 << NODE_BITS) as f64 + 0.5) as i32)
 }
 
-/// Cubic Hermite interpolation at a `place` counted from the first node in Q8.24; value, and slope
-/// per piece, in Q2.30. Beyond the last node the result is that of the last piece, which must be
-/// flat.
+/// Cubic Hermite interpolation at a distance `place` from the first node in Q8.24. Returns the
+/// value, and the slope times the length of a piece, in Q2.30. Beyond the last node it evaluates
+/// the last piece, which must be flat.
 ///
 /// # Scaling and overflow
-/// Both functions lie in 0..1 and are monotone, and their slopes, by pieces, are below 2^-3: so are
-/// differences of values, and all coefficients below 2^29. The place within a piece is a share
-/// in Q0.31, the product with it Q3.29 before it is doubled.
+/// Both functions lie in 0..1 and are monotone. Their slopes times the length of a piece are below
+/// 2^-3, and so are differences of adjacent values; all coefficients are below 2^29. The position
+/// within a piece is a share in Q0.31; a product with it is Q3.29 and is doubled to Q2.30.
 #[inline(always)]
 fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) {
     let index = ((place >> PLACE_BITS) as usize).min(NODES - 2);
     let ((start, first), (end, last)) = (nodes[index], nodes[index + 1]);
-    // Negative, so that the compiler does not know the sign: see `square`.
+    // Negated, so that the compiler does not know its sign: see `square`.
     let share = (((place << (32 - PLACE_BITS)) >> 1) as i32).wrapping_neg();
     let less = |coefficient: i32| high(share, coefficient) << 1;
     let rise = end - start;
@@ -41,16 +41,16 @@ fn between<const NODES: usize>(nodes: &[Node; NODES], place: u32) -> (i32, i32) 
     (value, slope)
 }
 
-/// A value in Q2.30 in Q8.24; rounds.
+/// Converts Q2.30 to Q8.24, rounded to nearest.
 fn in_units(value: i32) -> i32 {
     (value + (1 << 5)) >> 6
 }
 
-/// Beyond this distance from 0, the tail of softplus is below half an ULP.
+/// From this |x| on, ln(1 + e^-|x|) is below half an ULP.
 const LONGEST_TAIL: usize = 18;
 const SOFTPLUS_NODES: usize = (LONGEST_TAIL << NODE_BITS) + 1;
 
-/// ln(1 + e^-x), and the slope's magnitude.
+/// ln(1 + e^-x) and its slope.
 static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
     let mut table = [(0, 0); SOFTPLUS_NODES];
     let mut index = 0;
@@ -63,11 +63,12 @@ static SOFTPLUS: [Node; SOFTPLUS_NODES] = {
     table
 };
 
-/// ln(e^x + 1), saturated, within 2 units, and the logistic function of x, within 2.1e-6.
+/// ln(e^x + 1), saturated, and its slope, the logistic function of x. The errors are below 2 units
+/// and 2.1e-6.
 ///
 /// # Scaling and overflow
-/// The slope of the tail, by pieces in Q2.30, is from -2^26 to 0, but for a rounding that is cut
-/// off; by units, in Q1.31, from -2^30 to 0.
+/// The slope of ln(1 + e^-|x|) per piece in Q2.30 is -2^26 to 0, after positive rounding errors are
+/// clamped to 0. Per unit of x, in Q1.31, it is -2^30 to 0.
 #[inline(always)]
 pub(super) fn softplus(x: i32) -> (i32, Unit) {
     let (tail, slope) = between(&SOFTPLUS, x.unsigned_abs());
@@ -94,11 +95,11 @@ static WEIBULL: [Node; WEIBULL_NODES] = {
     table
 };
 
-/// 1 - e^-e^x, within 16 units.
+/// 1 - e^-e^x; the error is below 16 units.
 ///
 /// # Scaling and overflow
-/// Below the first node and beyond the last it is 0 and 1 to 3e-8. The place from the first
-/// node on is x and 18: saturated, it is beyond the last node.
+/// Outside the nodes the value is within 3e-8 of 0 or 1. The distance from the first node, x + 18,
+/// saturates beyond the last node.
 pub(super) fn weibull(x: i32) -> i32 {
     let place = x.saturating_sub(WEIBULL_LEAST << 24).max(0);
     in_units(between(&WEIBULL, place as u32).0)
@@ -110,12 +111,12 @@ pub(super) const TABLE_BYTES: usize = (SOFTPLUS_NODES + WEIBULL_NODES) * size_of
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::{UNIT, worst_between};
+    use super::super::exhaustive::{UNIT, largest_error_between};
     use super::*;
 
     #[test]
     fn softplus_is_within_2_ulp_and_its_slope_within_2_1e_6() {
-        let found = worst_between(-18, 18, |x| {
+        let found = largest_error_between(-18, 18, |x| {
             let exact = f64::from(x) / UNIT;
             let power = (-exact.abs()).exp();
             let expected = ((exact.max(0.0) + power.ln_1p()) * UNIT).min(f64::from(i32::MAX));
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn weibull_is_within_16_ulp() {
-        let found = worst_between(-18, 3, |x| {
+        let found = largest_error_between(-18, 3, |x| {
             let power = (f64::from(x) / UNIT).min(100.0).exp();
             (f64::from(weibull(x)) + (-power).exp_m1() * UNIT).abs() / 16.0
         });

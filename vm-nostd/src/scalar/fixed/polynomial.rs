@@ -2,12 +2,13 @@
 
 use super::number::high;
 
-/// The polynomial with terms by powers of x, the constant first, in Q8.24, for x in Q8.24 between
-/// -1 and 1. Each product is cut by less than two units: of eight terms, the value is within 16
+/// Polynomial in x by Horner's scheme, -1 < x < 1, in Q8.24; coefficients from the constant on.
+/// Each product is truncated by less than two units: with eight coefficients the error is below 16
 /// units.
+///
 /// # Scaling and overflow
-/// x becomes a share in Q1.31: a product with it is Q9.23 before it is doubled. Magnitudes of
-/// terms add to 100 at most: so does what is summed up at any step.
+/// x is converted to Q1.31: a product with it is Q9.23 and is doubled to Q8.24. The magnitudes of
+/// the coefficients add up to at most 100, which bounds every intermediate sum.
 #[inline(always)]
 pub(super) fn at(x: i32, terms: impl DoubleEndedIterator<Item = i32>) -> i32 {
     let share = x << 7;
@@ -16,15 +17,15 @@ pub(super) fn at(x: i32, terms: impl DoubleEndedIterator<Item = i32>) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::{UNIT, of_any_length};
+    use super::super::exhaustive::{UNIT, random_numbers};
     use super::*;
 
     #[test]
     fn polynomials_are_within_their_bounds() {
-        let mut terms = of_any_length().map(|bits| bits >> 4);
+        let mut terms = random_numbers().map(|bits| bits >> 4);
         for _ in 0..2_000 {
             let terms: [i32; 8] = core::array::from_fn(|_| terms.next().expect("endless"));
-            for x in of_any_length().map(|bits| bits >> 7).take(100) {
+            for x in random_numbers().map(|bits| bits >> 7).take(100) {
                 let value = at(x, terms.into_iter());
                 let x = f64::from(x) / UNIT;
                 let exact =

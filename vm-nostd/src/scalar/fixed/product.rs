@@ -1,10 +1,10 @@
 //! 32 x 32 to 64-bit products.
 //!
-//! ARMv6-M (Cortex-M0, M0+) only has 32-bit products. Four products of half words are faster there
-//! than the compiler's routine, which multiplies 64-bit factors.
+//! ARMv6-M (Cortex-M0, M0+) has 32-bit products only. Four products of half words are faster there
+//! than the compiler's routine for 64-bit factors.
 
-/// Whether the core lacks UMULL and SMULL. Stable Rust has no `cfg` for that; these Arm cores also
-/// lack atomic read-modify-write, for which it has one.
+/// Whether the core lacks UMULL and SMULL. Stable Rust has no `cfg` for that, but one for atomic
+/// read-modify-write, which the same Arm cores lack.
 const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// Signed product: at most 2^62.
@@ -32,9 +32,8 @@ fn words((high, low): (u32, u32)) -> i64 {
 }
 
 /// # Scaling and overflow
-/// A high half is at least -2^15, a low half below 2^16: their product and 2^16 - 1 more fit in 32
-/// bits with sign. The high word is that of the exact product, and so are the sums that lead to it,
-/// modulo 2^32.
+/// A high half is at least -2^15 and a low half below 2^16: their product plus 2^16 - 1 fits in a
+/// signed 32-bit word. The high word is exact: it is that of the 64-bit product, modulo 2^32.
 #[inline(never)]
 fn signed_by_halves(a: i32, b: i32) -> (u32, u32) {
     let [(a_low, a_high), (b_low, b_high)] = [a, b].map(|x| (x & 0xFFFF, x >> 16));
@@ -46,7 +45,8 @@ fn signed_by_halves(a: i32, b: i32) -> (u32, u32) {
 }
 
 /// # Scaling and overflow
-/// As [`signed_by_halves`]; two low halves and 2^16 - 1 more fit in 32 bits without sign.
+/// As in [`signed_by_halves`]; the product of two unsigned halves plus 2^16 - 1 fits in an unsigned
+/// 32-bit word.
 #[inline(never)]
 fn mixed_by_halves(a: i32, b: u32) -> (u32, u32) {
     let (a_low, a_high) = (a as u32 & 0xFFFF, a >> 16);
@@ -59,7 +59,7 @@ fn mixed_by_halves(a: i32, b: u32) -> (u32, u32) {
 }
 
 /// # Scaling and overflow
-/// Two halves and 2^16 - 1 more fit in 32 bits.
+/// The product of two halves plus 2^16 - 1 fits in an unsigned 32-bit word.
 #[inline(never)]
 fn unsigned_by_halves(a: u32, b: u32) -> (u32, u32) {
     let [(a_low, a_high), (b_low, b_high)] = [a, b].map(|x| (x & 0xFFFF, x >> 16));

@@ -1,17 +1,18 @@
-//! Quotients as products with a reciprocal, without a division.
+//! Quotients and reciprocals without a division: products with the reciprocal of a mantissa.
 
 use super::factor::Factor;
 use super::mantissa;
 use super::number::{FRACTION, exact};
 use core::array::from_fn;
 
-/// Reciprocal of a positive denominator, for quotients in Q8.24 of numbers in one format; quotients
-/// are within 2^-28 of their value and 1 ULP. A denominator below an ULP counts as one.
+/// Reciprocal of a positive denominator as a factor. The factor times a numerator in the same
+/// format is the quotient in Q8.24; its error is below 1 ULP plus 2^-28 of its value. Denominators
+/// below 1 ULP are clamped to 1 ULP.
 ///
 /// # Scaling and overflow
-/// The denominator, shifted left by z bits, 1 to 31, until its first bit is set, is a mantissa in
-/// Q1.31; its reciprocal there, at most 2^31 and here a unit less, is 2^(38 - z) times what the
-/// numerator has to be multiplied with. That shift is 7 to 37 bits.
+/// Shifted left by z bits, 1 to 31, until its first bit is set, the denominator is a mantissa in
+/// Q1.31. The reciprocal of the mantissa, clamped to 2^31 - 1, is 2^(38 - z) times the factor. This
+/// shift is 7 to 37 bits.
 pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     let denominator = denominator.max(1) as u32;
     let zeros = denominator.leading_zeros();
@@ -19,12 +20,12 @@ pub(super) fn reciprocal_factor(denominator: i32) -> Factor {
     Factor::scaled_down(reciprocal as i32, 38 - zeros)
 }
 
-/// Reciprocals of two positive numbers as factors: 2^62 over the number, shifted right by `shifts`
-/// less the number of its zeros before the first bit. Within 2^-28 of their value.
+/// Reciprocals of two positive numbers as factors: 2^(62 - shift) over the number, with its shift
+/// from `shifts`. The relative error is below 2^-28.
 ///
 /// # Scaling and overflow
-/// Shifted left until their first bit is set, both are mantissas in Q1.31, and so are their
-/// reciprocals, of which 2^31 is a unit less.
+/// Shifted left until their first bit is set, both numbers are mantissas in Q1.31. The reciprocals
+/// of these are clamped to 2^31 - 1.
 #[inline(always)]
 pub(super) fn reciprocal_factors(numbers: [i32; 2], shifts: [u32; 2]) -> [Factor; 2] {
     let zeros = numbers.map(|number| number.leading_zeros());
@@ -36,13 +37,13 @@ pub(super) fn reciprocal_factors(numbers: [i32; 2], shifts: [u32; 2]) -> [Factor
     })
 }
 
-/// 1/x in Q8.24 of a positive number, saturated; within 2^-28 of its value and 1 unit. For 0 and
-/// below it is the greatest number.
+/// 1/x in Q8.24 of a positive number, saturated; the error is below 1 unit plus 2^-28 of the value.
+/// For 0 and negative numbers it is the largest number.
 ///
 /// # Scaling and overflow
-/// x, 2^-7 at least, where 1/x is 2^7 and saturates, and shifted left by z bits, up to 14, until
-/// its first bit is set, is a mantissa; its reciprocal in Q1.31, shifted right by 14 - z bits, is
-/// Q8.24.
+/// x is clamped to at least 2^-7, where 1/x is 2^7 and saturates. Shifted left by z bits, up to 14,
+/// until its first bit is set, it is a mantissa; the reciprocal of that in Q1.31, shifted right by
+/// 14 - z bits, is Q8.24.
 pub(super) fn reciprocal(x: i32) -> i32 {
     const LEAST: i32 = 1 << (FRACTION - 7);
     let x = x.max(LEAST) as u32;
@@ -50,26 +51,26 @@ pub(super) fn reciprocal(x: i32) -> i32 {
     scaled_back(mantissa::reciprocal(x << zeros), 14 - zeros)
 }
 
-/// A mantissa's reciprocal in Q1.31, at most 2^31, shifted right by up to 22 bits, rounded; 2^31,
-/// not shifted, becomes a unit less.
+/// The reciprocal of a mantissa in Q1.31, at most 2^31, shifted right by up to 22 bits, rounded and
+/// clamped to 2^31 - 1.
 #[inline(always)]
 fn scaled_back(reciprocal: u32, shift: u32) -> i32 {
     ((reciprocal + (1 << shift >> 1)) >> shift).min(i32::MAX as u32) as i32
 }
 
-/// Two words as one, shifted left by at most 31 bits.
+/// High word of two words shifted left by at most 31 bits.
 #[inline(always)]
 pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
     (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
-/// 1/(1 + d v) in Q8.24 of each d, within 2^-24 and 2^-28 of its value; 1 + d v below 2^-7 counts
-/// as that, to 2^-16.
+/// 1/(1 + d v) in Q8.24 for each d; the error is below 2^-24 plus 2^-28 of the value. 1 + d v is
+/// clamped to at least 2^-7, within 2^-16.
 ///
 /// # Scaling and overflow
-/// d v is Q16.48 and at most 2^62; of the sum, the high word is Q16.16 and 2^9 at least.
-/// Shifted left by z bits, 1 to 22, it is a mantissa; its reciprocal in Q1.31, shifted right by
-/// 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is a unit less.
+/// d v is Q16.48 and at most 2^62. The high word of 1 + d v is Q16.16 and at least 2^9. Shifted
+/// left by z bits, 1 to 22, the sum is a mantissa; the reciprocal of that in Q1.31, shifted right
+/// by 22 - z bits, is Q8.24. At 2^-7 it would be 128 and is clamped to one unit below.
 #[inline(always)]
 pub(super) fn reciprocals_of_one_plus<const N: usize>(d: [i32; N], v: i32) -> [i32; N] {
     const ONE: i32 = 1 << 16;
@@ -90,19 +91,19 @@ pub(super) fn reciprocals_of_one_plus<const N: usize>(d: [i32; N], v: i32) -> [i
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::{UNIT, of_any_length};
+    use super::super::exhaustive::{UNIT, random_numbers};
     use super::*;
 
-    /// How far a number is from one that saturates, as a share of 1 unit and 2^-28 of it.
-    fn of_the_bound(found: i32, exact: f64) -> f64 {
+    /// Error of a number, relative to the bound of 1 unit plus 2^-28 of the exact, saturated value.
+    fn relative_to_bound(found: i32, exact: f64) -> f64 {
         let saturated = (exact * UNIT).clamp(f64::from(-i32::MAX), f64::from(i32::MAX));
         (f64::from(found) - saturated).abs() / (1.0 + saturated.abs() * 2_f64.powi(-28))
     }
 
     #[test]
     fn reciprocals_are_within_an_ulp_or_saturate() {
-        for x in (-10..1_000_000).chain(of_any_length().take(1_000_000)) {
-            let found = of_the_bound(reciprocal(x), UNIT / f64::from(x.max(1)));
+        for x in (-10..1_000_000).chain(random_numbers().take(1_000_000)) {
+            let found = relative_to_bound(reciprocal(x), UNIT / f64::from(x.max(1)));
             assert!(found <= 1.0, "1/{x}: {found} of the bound");
         }
     }
@@ -114,10 +115,10 @@ mod tests {
     #[test]
     fn ratios_are_within_an_ulp_or_saturate() {
         let edges = [0, 1, -1, 7, 1 << 24, i32::MAX, i32::MIN, i32::MAX - 1, 1 << 30, 1 << 17];
-        let numbers = || edges.into_iter().chain(of_any_length());
+        let numbers = || edges.into_iter().chain(random_numbers());
         for n in numbers().take(2_000) {
             for d in numbers().skip(1).take(2_000).filter(|d| *d > 0) {
-                let found = of_the_bound(ratio(n, d), f64::from(n) / f64::from(d));
+                let found = relative_to_bound(ratio(n, d), f64::from(n) / f64::from(d));
                 assert!(found <= 1.0, "{n}/{d}: {found} of the bound");
             }
         }
@@ -126,14 +127,14 @@ mod tests {
 
     #[test]
     fn reciprocals_of_one_plus_a_product_are_within_their_bound() {
-        let numbers = || [0, 1, -1, i32::MAX, i32::MIN].into_iter().chain(of_any_length());
+        let numbers = || [0, 1, -1, i32::MAX, i32::MIN].into_iter().chain(random_numbers());
         for d in numbers().take(2_000) {
             for v in numbers().take(2_000) {
                 let sum = 1.0 + f64::from(d) / UNIT * (f64::from(v) / UNIT);
                 let exact = 1.0 / sum.max(2_f64.powi(-7));
                 let [found, _] =
                     reciprocals_of_one_plus([d, v], v).map(|bits| f64::from(bits) / UNIT);
-                // The least sum is told from its high word: by 2^-16 at most.
+                // Only the high word of the sum is clamped: an error of up to 2^-16.
                 let least =
                     if sum < 2_f64.powi(-7) { exact * exact * 2_f64.powi(-16) } else { 0.0 };
                 let bound = 2_f64.powi(-24) * (1.0 + exact / 16.0) + least;

@@ -1,4 +1,4 @@
-//! Force balance of a residual, a line and a hyperbola: a quadratic equation and its square root.
+//! Root of a force balance with a line and a hyperbola: a quadratic equation and its square root.
 
 use super::number::{exact, high, square};
 use super::product;
@@ -6,8 +6,8 @@ use super::quotient::{reciprocal_factors, word};
 use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
-/// What [`hyperbola_root`] is asked: numbers in Q8.24, positive but for residual and
-/// half_curvature.
+/// Arguments of [`hyperbola_root`], in Q8.24. All are positive except `residual` and
+/// `half_curvature`.
 pub(super) struct Forces {
     pub(super) residual: i32,
     pub(super) line: i32,
@@ -17,17 +17,21 @@ pub(super) struct Forces {
     pub(super) viscosity: i32,
 }
 
-/// The root u of residual + line u + steepness u/(1 + bend u) = 0, bend =
-/// -half_curvature/steepness, and 1/(inertia + damping), damping = viscosity + steepness/(1 + bend
-/// u), in Q8.24, saturated. Both are within 2e-7, plus the effect of 2^-24 of the largest product
-/// and of the root on `whole` or `after` under cancellation; the reciprocal also within 2^-18 of
-/// the largest product, or of 2^-17, relative to `all`.
+/// The root u of residual + line u + steepness u/(1 + bend u) = 0 and 1/(inertia + damping), with
+/// bend = -half_curvature/steepness and damping = viscosity + steepness/(1 + bend u); in Q8.24,
+/// saturated.
+///
+/// The error of both is below 2e-7 plus that of cancellation: an error of 2^-24 of the largest
+/// product and of the square root, relative to `denominator` or `secant_denominator`. The
+/// reciprocal has a further error of 2^-18 of the largest product, or of 2^-17, relative to
+/// `total`.
 ///
 /// # Scaling and overflow
-/// All products are Q16.48 and at most 2^62. They are shifted left together until one of them has
-/// only its sign before the first bit, and cut to 29 bits: sums of three are below 2^30, and the
-/// discriminant, a square of that and four times a product, below 2^60. `whole` and `after` are
-/// below 2^31, and so is `all`, which has 8 bits fewer than these times Q8.24.
+/// All products are Q16.48 and at most 2^62. They are normalised together: shifted left until the
+/// largest fills the word, and cut to 29 bits. Sums of three are below 2^30, and the discriminant,
+/// the square of such a sum plus four times a product, is below 2^60. `denominator` and
+/// `secant_denominator` are below 2^31, and so is `total`, which has 8 bits fewer than their
+/// product with a number in Q8.24.
 #[inline(always)]
 pub(super) fn hyperbola_root(forces: &Forces) -> (i32, i32) {
     let Forces { residual, line, steepness, half_curvature, inertia, viscosity } = *forces;
@@ -39,30 +43,31 @@ pub(super) fn hyperbola_root(forces: &Forces) -> (i32, i32) {
     ];
     let bits = products.iter().fold(0, |bits, (high, _)| bits | (high ^ (high >> 31)));
     let left = bits.leading_zeros() - 1;
-    let [straight, square, bent, residual] = products.map(|product| word(product, left) >> 3);
-    let linear = straight + square - bent;
-    // linear² + 4 straight bent, as a sum of positive terms.
-    let difference = straight + bent - square;
+    let [line_product, square, curvature_product, residual] =
+        products.map(|product| word(product, left) >> 3);
+    let linear = line_product + square - curvature_product;
+    // linear² + 4 line_product curvature_product, written as a sum of positive terms.
+    let difference = line_product + curvature_product - square;
     let discriminant =
-        product::signed(difference, difference) + 4 * product::signed(straight, square);
+        product::signed(difference, difference) + 4 * product::signed(line_product, square);
     let root = square_root(discriminant as u64 | 1) as i32;
-    // The root is at least |difference|: each sum is smaller only by rounding, and only if both of
-    // its terms are large.
-    let whole = (linear + root).max((2 * straight) | 1);
-    let after = (whole + 2 * bent).max((2 * square) | 1);
-    // (inertia + damping) after; one reciprocal for both quotients.
-    let heavy = inertia.saturating_add(viscosity);
-    let all = (high(heavy, after) + high(steepness, whole)) | 1;
-    let [per_whole, per_all] = reciprocal_factors([whole, all], [37, 46]);
-    (per_whole.times(-residual), per_all.times(after))
+    // The root is at least |difference|, so that in exact arithmetic both denominators are at least
+    // their lower bounds here.
+    let denominator = (linear + root).max((2 * line_product) | 1);
+    let secant_denominator = (denominator + 2 * curvature_product).max((2 * square) | 1);
+    // total = (inertia + damping) secant_denominator. Both quotients share one reciprocal.
+    let without_secant = inertia.saturating_add(viscosity);
+    let total = (high(without_secant, secant_denominator) + high(steepness, denominator)) | 1;
+    let [per_denominator, per_total] = reciprocal_factors([denominator, total], [37, 46]);
+    (per_denominator.times(-residual), per_total.times(secant_denominator))
 }
 
 /// Bits of the index into the table.
 const INDEX_BITS: u32 = 7;
 const ENTRIES: usize = 1 << INDEX_BITS;
 
-/// 1/√m at the middle of each 128th of 0..1, Q1.31. No m is in the first quarter: its entries are
-/// there so that an index of seven bits needs no check, and nothing in a tick can panic.
+/// 1/√m at the midpoint of each 128th of 0..1, Q1.31. m is at least 1/4; the entries below are
+/// unused, but with them a 7-bit index needs no bounds check and cannot panic.
 static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
     let mut table = [0; ENTRIES];
     let mut index = ENTRIES / 4;
@@ -78,13 +83,14 @@ static RECIPROCAL_ROOTS: [u32; ENTRIES] = {
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = ENTRIES * size_of::<u32>();
 
-/// √x for 1 <= x < 2^60, within 2^-25 of its value and a unit.
+/// √x for 1 <= x < 2^60; relative error below 2^-25, plus one unit.
 ///
 /// # Scaling and overflow
-/// x, shifted left by an even number z of bits, 4 to 62, until one of its first two is set, is m in
-/// Q0.32, 1/4 to 1. With c from the table, y = m c is √m but for a 128th of it, in Q1.31, and d = y
-/// c - 1 below 2^26 in Q0.32, the 1 being bit 62 of Q2.62 and falling out of the 32 bits from bit
-/// 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m to d⁴/4 < 2^-25.9.
+/// x is shifted left by an even number z of bits, 4 to 62, until one of its first two bits is set:
+/// this is m in Q0.32, 1/4 to 1. With c from the table, y = m c approximates √m within 1/128, in
+/// Q1.31. d = y c - 1 is below 2^26 in Q0.32: the 1 is bit 62 of the product in Q2.62 and is
+/// dropped by taking the 32 bits from bit 30 on. y (1 - d/2 + 3 d²/8 - 5 d³/16) is √m with a
+/// truncation error of d⁴/4 < 2^-25.9.
 #[inline(always)]
 fn square_root(x: u64) -> u32 {
     let (mut upper, mut lower, mut shifted) = ((x >> 32) as u32, x as u32, 0);
@@ -98,7 +104,7 @@ fn square_root(x: u64) -> u32 {
     let c = RECIPROCAL_ROOTS[(m >> (32 - INDEX_BITS)) as usize];
     let y = (product::unsigned(m, c) >> 32) as u32;
     let d = (product::unsigned(y, c) >> 30) as u32 as i32;
-    // 3/8 in Q0.32, less 5/16 of d.
+    // 3/8 - 5/16 d in Q0.32.
     let curved = 0x6000_0000 - (d >> 2) - (d >> 4);
     let beyond = (d >> 1) - high(square(d), curved);
     let root = y.wrapping_add_signed(-(high((y >> 1) as i32, beyond) << 1));
@@ -107,7 +113,7 @@ fn square_root(x: u64) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::every::UNIT;
+    use super::super::exhaustive::UNIT;
     use super::*;
 
     #[test]
@@ -123,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_make_up_for_the_residual() {
+    fn roots_and_reciprocals_are_within_their_bounds() {
         let q = |x: f64| (x * UNIT).round() as i32;
         let f = |x: i32| f64::from(x) / UNIT;
         for line in [0.02, 0.1, 3.0, 40.0] {
@@ -142,22 +148,27 @@ mod tests {
                             viscosity,
                         });
                         // The same in f64, from the rounded numbers.
-                        let heavy = f(inertia) + f(viscosity);
+                        let without_secant = f(inertia) + f(viscosity);
                         let (residual, k, s, h) = (f(residual), f(k), f(s), f(h));
                         let parts = [s * k, s * s, residual * h, residual * s];
                         let linear = parts[0] + parts[1] - parts[2];
                         let difference = parts[0] + parts[2] - parts[1];
                         let root = difference.hypot((4.0 * parts[0] * parts[1]).sqrt());
-                        let whole = linear + root;
-                        let after = whole + 2.0 * parts[2];
-                        let exact = [-2.0 * parts[3] / whole, 1.0 / (heavy + s * whole / after)];
-                        // What the largest product, or the smallest, is cut to, and the square
-                        // root's error.
+                        let denominator = linear + root;
+                        let secant_denominator = denominator + 2.0 * parts[2];
+                        let exact = [
+                            -2.0 * parts[3] / denominator,
+                            1.0 / (without_secant + s * denominator / secant_denominator),
+                        ];
+                        // Truncation of the products, and the error of the square root.
                         let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
                         let lost = (most + root) * 2_f64.powi(-24) + 2_f64.powi(-43);
-                        let all = heavy * after + s * whole;
-                        let of_all = most.max(2_f64.powi(-17)) / all * 2_f64.powi(-18);
-                        let lost = [lost / whole, lost / after.min(whole) + of_all];
+                        let total = without_secant * secant_denominator + s * denominator;
+                        let of_total = most.max(2_f64.powi(-17)) / total * 2_f64.powi(-18);
+                        let lost = [
+                            lost / denominator,
+                            lost / secant_denominator.min(denominator) + of_total,
+                        ];
                         for ((found, exact), relative) in
                             [found.0, found.1].map(f).into_iter().zip(exact).zip(lost)
                         {

@@ -1,20 +1,19 @@
-//! Numbers from 0 to 1, products with which take one instruction (SMMUL) and a shift, and cannot
-//! overflow.
+//! Factors from 0 to 1: a product takes one instruction (SMMUL) and a shift, and cannot overflow.
 
 use super::number::{FRACTION, ONE, high};
 
-/// A number from 0 to 1 in Q1.31; 1 itself would be 2^31 and is less.
+/// A number from 0 to 1 in Q1.31. 1 would be 2^31 and is clamped below it.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit(i32);
 
 impl Unit {
-    /// A number in Q8.24, clamped to 0..1; 1 is an ULP less.
+    /// A number in Q8.24, clamped to 0 and 1 - 1 ULP.
     #[inline(always)]
     pub(super) fn new(number: i32) -> Self {
         Self(number.clamp(0, ONE - 1) << (31 - FRACTION))
     }
 
-    /// The number with such bits in Q1.31.
+    /// The number `bits` in Q1.31.
     #[inline(always)]
     pub(super) fn from_bits(bits: i32) -> Self {
         Self(bits)
@@ -25,7 +24,8 @@ impl Unit {
         self.0
     }
 
-    /// Product with a number in any format, rounded toward minus infinity, to two units.
+    /// Product with a number in any format, rounded toward minus infinity to a multiple of two
+    /// units.
     #[inline(always)]
     pub(super) fn of(self, number: i32) -> i32 {
         high(number, self.0) << 1
@@ -41,9 +41,9 @@ mod tests {
         for unit in [-ONE, -1, 0, 1, 12_345, ONE / 2, ONE - 1, ONE, 2 * ONE, i32::MAX] {
             let exact = f64::from(unit.clamp(0, ONE)) / f64::from(ONE);
             for number in [0, 1, -1, 12_345, -7_654_321, 1 << 24, i32::MAX, i32::MIN] {
-                let left = exact * f64::from(number) - f64::from(Unit::new(unit).of(number));
+                let error = exact * f64::from(number) - f64::from(Unit::new(unit).of(number));
                 let ulp = f64::from(number).abs() / f64::from(ONE);
-                assert!((-ulp..2.0 + ulp).contains(&left), "{unit} {number}: {left}");
+                assert!((-ulp..2.0 + ulp).contains(&error), "{unit} {number}: {error}");
             }
         }
     }

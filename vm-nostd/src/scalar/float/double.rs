@@ -1,4 +1,4 @@
-//! Kernels in `f64`, from `libm`, which show the truncation error alone.
+//! Kernels in `f64`, from `libm`: with negligible rounding, they show the truncation error alone.
 
 pub(super) fn exp(x: f64) -> f64 {
     libm::exp(x)
@@ -8,21 +8,21 @@ pub(super) fn ln(x: f64) -> f64 {
     libm::log(x.max(f64::MIN_POSITIVE))
 }
 
-/// ln(e^x + 1) and its slope, within 5e-16 of their value.
+/// ln(e^x + 1) and its slope; the relative errors are below 5e-16.
 pub(super) fn softplus(x: f64) -> (f64, f64) {
-    // One exponential, and no overflow.
+    // One exponential, which cannot overflow.
     let decay = libm::exp(-x.abs());
     let tail = libm::log1p(decay);
     let share = 1.0 / (1.0 + decay);
     if x > 0.0 { (x + tail, share) } else { (tail, decay * share) }
 }
 
-/// 1 - e^-e^x, within 5e-16 of its value.
+/// 1 - e^-e^x; the relative error is below 5e-16.
 pub(super) fn weibull(x: f64) -> f64 {
     -libm::expm1(-libm::exp(x.min(MOST)))
 }
 
-/// e^-e^5 is 1e-64, negligible next to 1; a larger power might overflow.
+/// Upper bound of x, against overflow. e^-e^5 is 1e-64, negligible next to 1.
 const MOST: f64 = 5.0;
 
 pub(crate) fn square_root(x: f64) -> f64 {

@@ -1,18 +1,19 @@
-//! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. Their bounds are
-//! asserted over their whole domains.
+//! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. Tests check
+//! their error bounds over their whole domains.
 
 use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
-/// 1.5 × 2^23: adding it to a number below 2^22 rounds that to a whole number in the last bits.
+/// 1.5 × 2^23: adding it to a number below 2^22 rounds the number to an integer, which is then in
+/// the last bits.
 const ROUNDING: f32 = 12_582_912.0;
-/// ln 2 in two parts, of which the first has few bits.
+/// ln 2 in two parts (Cody-Waite reduction): the high part has few bits.
 const LN_2_HIGH: f32 = 0.693_359_4;
 const LN_2_LOW: f32 = -2.121_944_4e-4;
-/// The least exponent of e at which the result is still a normal number.
+/// Smallest x for which e^x is a normal number, as an integer.
 const LEAST_EXPONENT: f32 = -87.0;
 
-/// e^x, within 2.1e-7 of its value, for -87 <= x <= 88; below, as at -87.
+/// e^x for x <= 88; the relative error is below 2.1e-7. x is clamped to at least -87.
 #[inline(always)]
 pub(super) fn exp(x: f32) -> f32 {
     let x = if x > LEAST_EXPONENT { x } else { LEAST_EXPONENT };
@@ -26,10 +27,10 @@ pub(super) fn exp(x: f32) -> f32 {
     f32::from_bits(mantissa.to_bits().wrapping_add(shifted.to_bits() << 23))
 }
 
-/// 1 - e^-x for x >= 0, within 4e-7 of its value up to x = 8; beyond, as there.
+/// 1 - e^-x for x >= 0; the relative error is below 4e-7 up to x = 8. x is clamped to at most 8.
 #[inline(always)]
 pub(super) fn one_minus_exp(x: f32) -> f32 {
-    // In an eighth of x, and then three times 1 - (1 - y)².
+    // Evaluated at x/8; y → 1 - (1 - y)² then doubles x three times.
     let u = if x < 8.0 { x * 0.125 } else { 1.0 };
     // Minimax for (1 - e^-u)/u on 0 <= u <= 1.
     let series = 0.999_999_94
@@ -42,7 +43,7 @@ pub(super) fn one_minus_exp(x: f32) -> f32 {
     half * (2.0 - half)
 }
 
-/// 1 - e^-x for 0 <= x <= 1.25, within 5e-7 of its value.
+/// 1 - e^-x for 0 <= x <= 1.25; the relative error is below 5e-7.
 #[inline(always)]
 pub(super) fn short_lag_response(x: f32) -> f32 {
     // Minimax for (1 - e^-x)/x.
@@ -52,11 +53,11 @@ pub(super) fn short_lag_response(x: f32) -> f32 {
     x * (first + square * (second + square * third))
 }
 
-/// √x of a number that is not negative: 0 to 5e-5 of its value too much, never too little, from
-/// 1e-37 on; at most 1e-18 below.
+/// √x of a non-negative number, with a relative error from 0 to +5e-5, never negative, for x of at
+/// least 1e-37. Below that the result is at most 1e-18.
 #[inline(always)]
 pub(super) fn square_root(x: f32) -> f32 {
-    // 1/√x to 5 % from the exponent's half: g. With w = x g², √x is x g/√w, and 1/√w a minimax
+    // g is 1/√x within 5 %, from half the exponent. With w = x g², √x is x g/√w; 1/√w is a minimax
     // parabola, raised by its largest error.
     let guess = f32::from_bits(0x5f35_59df - (x.to_bits() >> 1));
     let root = x * guess;
@@ -68,20 +69,22 @@ const LOGARITHM_BITS: u32 = 5;
 const LOGARITHMS: usize = 1 << LOGARITHM_BITS;
 const FRACTION_BITS: u32 = 23;
 
-/// Of each 32nd of the mantissas 1 to 2: a reciprocal 1/c of its middle, and ln c, both to `f32`.
+/// For each 32nd of the mantissas 1 to 2: the reciprocal 1/c of its midpoint, and ln c, rounded to
+/// `f32`.
 static MANTISSAS: [(f32, f32); LOGARITHMS] = {
     let mut table = [(0.0, 0.0); LOGARITHMS];
     let mut index = 0;
     while index < LOGARITHMS {
         let reciprocal = (64.0 / (64.0 + 2.0 * index as f64 + 1.0)) as f32;
-        // The logarithm of what the rounded reciprocal stands for.
+        // The logarithm of the reciprocal of the rounded 1/c.
         table[index] = (reciprocal, -series::ln_1p(reciprocal as f64 - 1.0) as f32);
         index += 1;
     }
     table
 };
 
-/// ln x of a positive normal number, within 1.5e-7 and 1e-7 of its value; below, about -87 to -88.
+/// ln x of a positive normal number; the error is below 1.5e-7 plus 1e-7 of the value. For 0 and
+/// subnormal numbers the result is -88.1 to -87.2.
 #[inline(always)]
 pub(super) fn ln(x: f32) -> f32 {
     let bits = x.to_bits();
@@ -90,29 +93,30 @@ pub(super) fn ln(x: f32) -> f32 {
     let mantissa = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000);
     let (reciprocal, logarithm) = MANTISSAS[index];
     let r = mantissa * reciprocal - 1.0;
-    // |r| <= 1/64: the series is cut at r⁵/5 < 2e-10.
+    // |r| <= 1/64: the truncation error of the series is r⁵/5 < 2e-10.
     let square = r * r;
     let series = r - square * ((0.5 - r * 0.333_333_34) + square * 0.25);
     let twos = exponent as f32;
     twos * LN_2_HIGH + (logarithm + (series + twos * LN_2_LOW))
 }
 
-/// The cubic through values and slopes at both ends of a piece of a length, as a polynomial in the
-/// share of the piece, constant first.
+/// The cubic with given values and slopes at both ends of a piece. Coefficients are in order of
+/// powers, constant first; the argument is 0..1 across the piece.
 const fn hermite(length: f64, start: (f64, f64), end: (f64, f64)) -> [f32; 4] {
     let (a, b) = (start.0, start.1 * length);
     let (rise, last) = (end.0 - start.0, end.1 * length);
     [a as f32, b as f32, (3.0 * rise - 2.0 * b - last) as f32, (b + last - 2.0 * rise) as f32]
 }
 
-/// Pieces of a table: a power of two, so that one instruction masks the index.
+/// Number of pieces of a table: a power of two, so that one instruction masks the index.
 const PIECES: usize = 128;
 
-/// Value of a function in pieces, and its slope by pieces, at a `place` in pieces; the piece that
-/// starts at 0 is number `zero`. Before the first and beyond the last, as these go on.
+/// Value of a piecewise cubic, and its slope per piece, at a `place` in units of pieces. The piece
+/// that starts at place 0 has index `zero`. Outside the table, the first or the last piece is
+/// extrapolated.
 ///
-/// The share of a piece is taken from the place itself, so that no bit of it is lost in the number
-/// of the piece.
+/// The position within a piece is computed from the place before the index is added, so that no
+/// bits are lost.
 #[inline(always)]
 fn piecewise(pieces: &[[f32; 4]; PIECES], place: f32, zero: i32) -> (f32, f32) {
     let index = ((place + zero as f32) as i32).clamp(0, PIECES as i32 - 1);
@@ -128,8 +132,7 @@ fn piecewise(pieces: &[[f32; 4]; PIECES], place: f32, zero: i32) -> (f32, f32) {
 const SOFTPLUS_PER_UNIT: u32 = 4;
 const SOFTPLUS_LEAST: i32 = -(PIECES as i32) / (2 * SOFTPLUS_PER_UNIT as i32);
 
-/// The first piece is what it is at its start, beyond which another formula is used, and the last
-/// is x: beyond it, too.
+/// The last piece is x, and is extrapolated. Below the first piece another formula is used.
 static SOFTPLUS: [[f32; 4]; PIECES] = {
     const fn node(index: usize) -> (f64, f64) {
         let power = series::exp(SOFTPLUS_LEAST as f64 + index as f64 / SOFTPLUS_PER_UNIT as f64);
@@ -146,11 +149,11 @@ static SOFTPLUS: [[f32; 4]; PIECES] = {
     table
 };
 
-/// ln(e^x + 1), within 2e-6 and 1e-7 of x, and within 2e-5 of its value; and its slope, within
-/// 2e-5.
+/// ln(e^x + 1) and its slope. The error of the value is below 2e-6 plus 1e-7 of x, and its relative
+/// error below 2e-5; the error of the slope is below 2e-5.
 ///
-/// Far below 0 it is e^x with relative accuracy: the equilibrium of two such forces in a slack
-/// muscle depends on their ratio.
+/// Far below 0 the value is e^x, with a small relative error: in a slack muscle the equilibrium of
+/// two such forces depends on their ratio.
 #[inline(always)]
 pub(super) fn softplus(x: f32) -> (f32, f32) {
     const ZERO: i32 = PIECES as i32 / 2;
@@ -168,7 +171,7 @@ const WEIBULL_LEAST: i32 = -15;
 const WEIBULL_MOST: i32 = 3;
 const WEIBULL_PER_UNIT: i32 = 7;
 
-/// The first piece and the last are constant: beyond them, too.
+/// The first and the last piece are constant, and are extrapolated.
 static WEIBULL: [[f32; 4]; PIECES] = {
     const fn node(index: usize) -> (f64, f64) {
         let place = (index - 1) as f64 / WEIBULL_PER_UNIT as f64;
@@ -188,8 +191,7 @@ static WEIBULL: [[f32; 4]; PIECES] = {
 };
 const _: () = assert!((WEIBULL_MOST - WEIBULL_LEAST) * WEIBULL_PER_UNIT == PIECES as i32 - 2);
 
-/// 1 - e^-e^x, within 2e-6 of its value, for -15 <= x <= 3; beyond, what it is at the nearest of
-/// these.
+/// 1 - e^-e^x for -15 <= x <= 3; the relative error is below 2e-6. x is clamped to this range.
 #[inline(always)]
 pub(super) fn weibull(x: f32) -> f32 {
     const ZERO: i32 = 1 - WEIBULL_LEAST * WEIBULL_PER_UNIT;
@@ -200,16 +202,16 @@ pub(super) fn weibull(x: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// The largest of `error` over numbers from `least` to `most`, evenly spaced, and near both
-    /// ends.
-    fn worst(least: f64, most: f64, error: impl Fn(f32, f64) -> f64) -> f64 {
+    /// Largest `error` over evenly spaced numbers from `least` to `most`, and over numbers near
+    /// both ends.
+    fn largest_error(least: f64, most: f64, error: impl Fn(f32, f64) -> f64) -> f64 {
         const COUNT: u32 = 1_000_000;
         let spaced = (0..=COUNT).map(|i| least + (most - least) * f64::from(i) / f64::from(COUNT));
         let near = (0..2000).map(|i| f64::from(i) * 1e-7 * (most - least));
         let all = spaced.chain(near.clone().map(|d| least + d)).chain(near.map(|d| most - d));
-        all.map(|x| x as f32).fold(0.0, |worst, x| {
+        all.map(|x| x as f32).fold(0.0, |largest, x| {
             let error = error(x, f64::from(x));
-            if error.is_nan() { error } else { worst.max(error) }
+            if error.is_nan() { error } else { largest.max(error) }
         })
     }
 
@@ -224,7 +226,7 @@ mod tests {
     #[test]
     fn exp_has_a_relative_error_below_2_1e_7() {
         let error = |x: f32, exact: f64| (f64::from(exp(x)) / exact.exp() - 1.0).abs();
-        let found = worst(-87.0, 88.0, error);
+        let found = largest_error(-87.0, 88.0, error);
         assert!(found <= 2.1e-7, "{found:e}");
         assert_eq!(exp(-1e30), exp(-87.0));
     }
@@ -235,7 +237,7 @@ mod tests {
             let exact = -(-exact).exp_m1();
             (f64::from(one_minus_exp(x)) - exact).abs() / exact.max(1e-30)
         };
-        let found = worst(1e-9, 8.0, error);
+        let found = largest_error(1e-9, 8.0, error);
         assert!(found <= 4e-7, "{found:e}");
         assert_eq!(one_minus_exp(0.0), 0.0);
         assert!((one_minus_exp(50.0) - 1.0).abs() < 4e-4);
@@ -247,20 +249,20 @@ mod tests {
             let exact = -(-exact).exp_m1();
             (f64::from(short_lag_response(x)) - exact).abs() / exact.max(1e-30)
         };
-        let found = worst(1e-9, 1.25, error);
+        let found = largest_error(1e-9, 1.25, error);
         assert!(found <= 5e-7, "{found:e}");
         assert_eq!(short_lag_response(0.0), 0.0);
     }
 
     #[test]
-    fn square_roots_are_up_to_5e5th_too_large_and_never_too_small() {
+    fn square_roots_have_a_relative_error_of_0_to_plus_5e_5() {
         for scale in [-122, -60, -1, 0, 1, 2, 33, 126] {
             let power = 2_f64.powi(scale);
             let error = |x: f32, exact: f64| {
                 let excess = f64::from(square_root(x)) / exact.sqrt() - 1.0;
                 if excess >= 0.0 { excess } else { f64::NAN }
             };
-            let found = worst(power, 2.0 * power, error);
+            let found = largest_error(power, 2.0 * power, error);
             assert!(found <= 5e-5, "{found:e} at 2^{scale}");
         }
         assert_eq!(square_root(0.0), 0.0);
@@ -275,7 +277,7 @@ mod tests {
                 let exact = exact.ln();
                 (f64::from(ln(x)) - exact).abs() - 1e-7 * exact.abs()
             };
-            let found = worst(power, 2.0 * power, error);
+            let found = largest_error(power, 2.0 * power, error);
             assert!(found <= 1.5e-7, "{found:e} at 2^{scale}");
         }
         for least in [0.0, 1e-45, 1e-40, 1e-38] {
@@ -293,7 +295,7 @@ mod tests {
             let absolute = (f64::from(value) - expected).abs() - 1e-7 * exact.max(0.0);
             (relative / 2e-5).max(absolute / 2e-6).max((f64::from(steepness) - slope).abs() / 2e-5)
         };
-        let found = worst(-87.0, 60.0, error);
+        let found = largest_error(-87.0, 60.0, error);
         assert!(found <= 1.0, "{found} of the bounds");
         assert_eq!(softplus(-1e30), softplus(-87.0));
         assert_eq!(softplus(1e30), (1e30, 1.0));
@@ -305,7 +307,7 @@ mod tests {
             let expected = -(-exact.exp()).exp_m1();
             (f64::from(weibull(x)) - expected).abs() / expected
         };
-        let found = worst(-15.0, 2.999_999, error);
+        let found = largest_error(-15.0, 2.999_999, error);
         assert!(found <= 2e-6, "{found:e}");
         assert_eq!(weibull(-1e30), weibull(-15.0));
         assert_eq!(weibull(1e30), weibull(3.0));

@@ -1,28 +1,29 @@
-//! Exhaustive arguments of a kernel, for tests.
+//! Largest error of a kernel over all its arguments, for tests.
 
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::thread;
 
 pub(super) const UNIT: f64 = (1_u32 << 24) as f64;
 
-/// With overflow checks all arguments would take too long: every n-th only.
+/// Step between arguments. With overflow checks, testing all arguments would take too long.
 const STEP: usize = if cfg!(debug_assertions) { 1009 } else { 1 };
 
-/// Largest `error` of all arguments from `least` to `most`, inclusive, on all cores; NaN if any is.
-pub(super) fn worst(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) -> f64 {
+/// Largest `error` over all arguments from `least` to `most`, inclusive, computed on all cores; NaN
+/// if any error is NaN.
+pub(super) fn largest_error(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) -> f64 {
     const BLOCK: i64 = 1 << 20;
     let next = AtomicI64::new(least);
     let work = || {
-        let mut worst = 0.0_f64;
+        let mut largest = 0.0_f64;
         loop {
             let first = next.fetch_add(BLOCK, Ordering::Relaxed);
             if first > most {
-                return worst;
+                return largest;
             }
             for number in (first..(first + BLOCK).min(most + 1)).step_by(STEP) {
                 let error = error(number);
                 // Keeps NaN.
-                worst = if error <= worst { worst } else { error };
+                largest = if error <= largest { largest } else { error };
             }
         }
     };
@@ -36,20 +37,24 @@ pub(super) fn worst(least: i64, most: i64, error: impl Fn(i64) -> f64 + Sync) ->
     })
 }
 
-/// The same over the numbers of Q8.24 between two whole ones, where a kernel is not constant or the
-/// identity, and over a spaced choice of all.
-pub(super) fn worst_between(least: i64, most: i64, error: impl Fn(i32) -> f64 + Sync) -> f64 {
+/// Largest `error` over all Q8.24 numbers between two whole numbers, and over every 4099th number
+/// of the entire range: outside the interval a kernel is constant or the identity.
+pub(super) fn largest_error_between(
+    least: i64,
+    most: i64,
+    error: impl Fn(i32) -> f64 + Sync,
+) -> f64 {
     const SPACE: i64 = 4099;
-    let every = worst(least << 24, most << 24, |number| error(number as i32));
+    let every = largest_error(least << 24, most << 24, |number| error(number as i32));
     let all = i64::from(i32::MIN) / SPACE..=i64::from(i32::MAX) / SPACE;
-    let spaced = worst(*all.start(), *all.end(), |place| error((place * SPACE) as i32));
+    let spaced = largest_error(*all.start(), *all.end(), |place| error((place * SPACE) as i32));
     let ends = [i32::MIN, i32::MIN + 1, i32::MAX - 1, i32::MAX].map(error);
     // Keeps NaN.
     ends.into_iter().chain([spaced]).fold(every, |a, b| if b <= a { a } else { b })
 }
 
 /// Reproducible pseudo-random numbers of any magnitude.
-pub(super) fn of_any_length() -> impl Iterator<Item = i32> {
+pub(super) fn random_numbers() -> impl Iterator<Item = i32> {
     let mut state = 1_u64;
     core::iter::repeat_with(move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
