@@ -164,9 +164,9 @@ pub trait Scalar:
     /// Solves a force balance with a residual `self`, a line and a hyperbola: the root u of
     /// `self` + `line` u + h(u) = 0. Also returns the damping at the root relative to the inertia.
     ///
-    /// h(u) = `steepness` u/(1 + bend u), with half its curvature at 0 in `half_curvature`; the root
-    /// is on the branch through 0. `line` and `steepness` are positive. The damping is `viscosity`
-    /// plus the secant of the hyperbola, h(u)/u.
+    /// h(u) = `steepness` u/(1 + bend u), with half its curvature at 0 in `half_curvature`; the
+    /// root is on the branch through 0. `line` and `steepness` are positive. The damping is
+    /// `viscosity` plus the secant of the hyperbola, h(u)/u.
     fn hyperbola_root(
         self,
         line: Self,

@@ -50,7 +50,7 @@ const LEAST_STEEPNESS: f64 = 1e-5;
 pub(crate) struct Motion<S> {
     /// Change of length, as the constant velocity that would cause it in one tick, L_ce0/s.
     pub(crate) travel: S,
-    /// L_ce0/s.
+    /// Velocity, L_ce0/s.
     pub(crate) velocity: S,
 }
 

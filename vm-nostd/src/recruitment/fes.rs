@@ -3,7 +3,7 @@
 //!
 //! f_env_i = f_stim/f0.5_i at any U, and Af_i depends on f_env_i directly. The input of the two
 //! lags of excitation is U; their output is the recruitment. Rising Tf = Tf1 L² + Tf2 f_env_i,
-//! falling Tf = (Tf3 + Tf4 [U > 0])/L. Sag has its firing level if f_env_i > 0.1.
+//! falling Tf = (Tf3 + Tf4)/L if U > 0, else Tf3/L. Sag has its firing level if f_env_i > 0.1.
 
 use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
