@@ -64,8 +64,8 @@ impl Kind {
 
     /// Ranges of what is tuned, on a logarithmic scale: gains per rad, per rad and s, and s/rad, of
     /// full stimulation or, of the model, of the weight's torque; of the model also the expected
-    /// lag (s), co-contraction (of the weight's torque), and the filter time of the lead (s), from a
-    /// pulse's interval up.
+    /// lag (s), co-contraction (of the weight's torque), and the filter time of the lead (s), from
+    /// a pulse's interval up.
     pub fn ranges(self) -> &'static [(f64, f64)] {
         const PI: [(f64, f64); 2] = [(0.01, 10.0), (0.01, 10.0)];
         const PID: [(f64, f64); 3] = [(0.01, 10.0), (0.01, 10.0), (0.003, 1.0)];

@@ -137,8 +137,8 @@ macro_rules! control_functions {
             pub status: u16,
         }
 
-        /// Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
-        /// discrete mode, which has none.
+        /// Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint.
+        /// VM_RESULT_PARAMETER in a discrete mode, which has none.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "stiffness"))]
         pub extern "C" fn vm_a_stiffness(
@@ -148,8 +148,8 @@ macro_rules! control_functions {
             plain(muscle::stiffness::<$S, _>(muscle, stiffness))
         }
 
-        /// Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
-        /// is no such joint.
+        /// Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if
+        /// there is no such joint.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "joint_size"))]
         pub extern "C" fn vm_a_joint_size(
@@ -160,8 +160,8 @@ macro_rules! control_functions {
             plain(joint::needed::<$S>(angle_count, muscle_count, size))
         }
 
-        /// Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
-        /// has the field, and the muscle's index.
+        /// Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may
+        /// be null, has the field, and the muscle's index.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "joint_build"))]
         pub extern "C" fn vm_a_joint_build(
@@ -173,8 +173,8 @@ macro_rules! control_functions {
             told(joint::build::<$S, _>(joint, size, params, error), error)
         }
 
-        /// Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
-        /// that of the angles; VM_RESULT_SIZE if the joint has more.
+        /// Paths and moment arms at angles (rad), which are clipped to their ranges and flagged.
+        /// `count` is that of the angles; VM_RESULT_SIZE if the joint has more.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "joint_posture"))]
         pub extern "C" fn vm_a_joint_posture(
@@ -191,8 +191,8 @@ macro_rules! control_functions {
             plain(outcome())
         }
 
-        /// Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
-        /// is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+        /// Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture;
+        /// flexion is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "joint_torques"))]
         pub extern "C" fn vm_a_joint_torques(
@@ -212,8 +212,8 @@ macro_rules! control_functions {
             plain(outcome())
         }
 
-        /// Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
-        /// (vm_a_stiffness); negative if the posture is unstable.
+        /// Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their
+        /// stiffnesses (vm_a_stiffness); negative if the posture is unstable.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "joint_stiffnesses"))]
         pub extern "C" fn vm_a_joint_stiffnesses(
@@ -253,8 +253,8 @@ macro_rules! control_functions {
             plain(controller::needed::<$S, Prostheses>(fiber_count, size))
         }
 
-        /// Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
-        /// which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+        /// Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory.
+        /// `error`, which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "prosthesis_build"))]
         pub extern "C" fn vm_a_prosthesis_build(
@@ -286,8 +286,9 @@ macro_rules! control_functions {
             plain(controller::start::<$S, Prostheses, _>(prosthesis, angle_rad))
         }
 
-        /// Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
-        /// clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+        /// Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of
+        /// range is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first
+        /// rest or restore.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "prosthesis_step"))]
         pub extern "C" fn vm_a_prosthesis_step(
@@ -355,8 +356,9 @@ macro_rules! control_functions {
             plain(controller::needed::<$S, FesControllers>(fiber_count, size))
         }
 
-        /// Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
-        /// which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+        /// Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the
+        /// memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
+        /// VM_RESULT_SIZE.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fes_build"))]
         pub extern "C" fn vm_a_fes_build(
@@ -372,17 +374,17 @@ macro_rules! control_functions {
             )
         }
 
-        /// Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
-        /// muscles and a gain of 1.
+        /// Starts an FES controller at an angle (rad), which is clipped to the joint's range, with
+        /// rested muscles and a gain of 1.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fes_start"))]
         pub extern "C" fn vm_a_fes_start(fes: *mut VmFesA, angle_rad: $Number) -> VmResult {
             plain(controller::start::<$S, FesControllers, _>(fes, angle_rad))
         }
 
-        /// Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
-        /// clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
-        /// restore.
+        /// Steps an FES controller by one tick: target and sensors to pulses. What is out of range
+        /// is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start
+        /// or restore.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fes_step"))]
         pub extern "C" fn vm_a_fes_step(

@@ -60,8 +60,8 @@ macro_rules! extra_functions {
             told(extras::build_fatigue::<$S, _>(fatigue, size, params, time_step_s, error), error)
         }
 
-        /// Advances fatigue by the activation and stimulation frequency of a tick (100 pps for natural
-        /// recruitment). Gives the fitness, 0..1.
+        /// Advances fatigue by the activation and stimulation frequency of a tick (100 pps for
+        /// natural recruitment). Gives the fitness, 0..1.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fatigue_advance"))]
         pub extern "C" fn vm_a_fatigue_advance(
@@ -91,7 +91,8 @@ macro_rules! extra_functions {
             plain(outcome())
         }
 
-        /// Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time step.
+        /// Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time
+        /// step.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fatigue_save"))]
         pub extern "C" fn vm_a_fatigue_save(
@@ -125,7 +126,8 @@ macro_rules! extra_functions {
             told(extras::build_curve::<$S, _>(curve, size, params, error), error)
         }
 
-        /// Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_ flags.
+        /// Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_
+        /// flags.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "curve_activation"))]
         pub extern "C" fn vm_a_curve_activation(

@@ -71,17 +71,18 @@ macro_rules! functions {
             pub tendon: $Number,
         }
 
-        /// Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
-        /// this library has none of that kind.
+        /// Bytes of memory that a muscle of `fiber_count` types in a mode needs.
+        /// VM_RESULT_PARAMETER if this library has none of that kind.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "size"))]
         pub extern "C" fn vm_a_size(fiber_count: u32, mode: u32, size: *mut usize) -> VmResult {
             plain(muscle::needed::<$S>(fiber_count, mode, size))
         }
 
-        /// Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES. `size`
-        /// is that of the memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
-        /// VM_RESULT_SIZE. Rest or restore comes next. A muscle that was there is replaced.
+        /// Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES.
+        /// `size` is that of the memory. `error`, which may be null, has details of
+        /// VM_RESULT_PARAMETER and VM_RESULT_SIZE. Rest or restore comes next. A muscle that was
+        /// there is replaced.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "build"))]
         pub extern "C" fn vm_a_build(
@@ -112,16 +113,16 @@ macro_rules! functions {
             told(muscle::build::<$S, _>(muscle, &order), error)
         }
 
-        /// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
-        /// unchanged.
+        /// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
+        /// muscle is unchanged.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "rest"))]
         pub extern "C" fn vm_a_rest(muscle: *mut VmMuscleA, path_length: $Path) -> VmResult {
             plain(muscle::rest::<$S, _>(muscle, path_length))
         }
 
-        /// Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
-        /// VM_RESULT_NOT_RESTED before the first rest or restore.
+        /// Steps a muscle by one tick. Inputs out of range are clipped and flagged in
+        /// `output->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "step"))]
         pub extern "C" fn vm_a_step(
@@ -163,8 +164,8 @@ macro_rules! functions {
             plain(outcome())
         }
 
-        /// Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE if
-        /// there is no room for its words: see state_words of info.
+        /// Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE
+        /// if there is no room for its words: see state_words of info.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "save"))]
         pub extern "C" fn vm_a_save(
@@ -175,8 +176,8 @@ macro_rules! functions {
             plain(muscle::save::<$S, _>(muscle, words, count))
         }
 
-        /// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
-        /// VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
+        /// Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time
+        /// step, VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "restore"))]
         pub extern "C" fn vm_a_restore(
@@ -187,8 +188,8 @@ macro_rules! functions {
             plain(muscle::restore::<$S, _>(muscle, words, count))
         }
 
-        /// Checksums of a muscle's coefficients, which never change, and of its state, which changes with
-        /// every tick. Firmware compares them to detect a flipped bit.
+        /// Checksums of a muscle's coefficients, which never change, and of its state, which
+        /// changes with every tick. Firmware compares them to detect a flipped bit.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "checksums"))]
         pub extern "C" fn vm_a_checksums(
@@ -199,8 +200,9 @@ macro_rules! functions {
             plain(muscle::checksums::<$S, _>(muscle, coefficients, state))
         }
 
-        /// Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
-        /// velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+        /// Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length
+        /// (L_ce0), a velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is
+        /// no such type.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "fiber_curves"))]
         pub extern "C" fn vm_a_fiber_curves(
@@ -225,7 +227,8 @@ macro_rules! functions {
             plain(outcome())
         }
 
-        /// Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+        /// Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has
+        /// the rest.
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!($prefix, "element_curves"))]
         pub extern "C" fn vm_a_element_curves(

@@ -71,7 +71,8 @@ pub const VM_CONTROL_MEASURED_NOT_FINITE: u16 = 1;
 /// The target was not finite (the last angle was kept, without motion) or outside its range, for
 /// torques 10,240 N m (clipped).
 pub const VM_CONTROL_TARGET_INVALID: u16 = 2;
-/// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was clipped.
+/// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was
+/// clipped.
 pub const VM_CONTROL_MEASURED_CLIPPED: u16 = 4;
 /// The torque was clipped to its limits.
 pub const VM_CONTROL_TORQUE_LIMITED: u16 = 8;

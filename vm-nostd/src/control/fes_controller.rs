@@ -32,11 +32,11 @@ bitflags::bitflags! {
     pub struct ControlStatus: u16 {
         /// The measured value was not finite: the last one was kept.
         const MEASURED_NOT_FINITE = 1 << 0;
-        /// The target was not finite (the last angle was kept, without motion) or outside its range,
-        /// for torques 10,240 N m (clipped).
+        /// The target was not finite (the last angle was kept, without motion) or outside its
+        /// range, for torques 10,240 N m (clipped).
         const TARGET_INVALID = 1 << 1;
-        /// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was
-        /// clipped.
+        /// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and
+        /// was clipped.
         const MEASURED_CLIPPED = 1 << 2;
         /// The torque was clipped to its limits.
         const TORQUE_LIMITED = 1 << 3;
