@@ -327,7 +327,8 @@ typedef struct VmFesF64 VmFesF64;
 #define VM_CONTROL_TARGET_INVALID 2
 
 /**
- * The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was clipped.
+ * The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and was
+ * clipped.
  */
 #define VM_CONTROL_MEASURED_CLIPPED 4
 
@@ -2492,15 +2493,16 @@ VmResult vm_joint_preset(uint32_t preset,
                          VmPath *paths);
 
 /**
- * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
- * this library has none of that kind.
+ * Bytes of memory that a muscle of `fiber_count` types in a mode needs.
+ * VM_RESULT_PARAMETER if this library has none of that kind.
  */
 VmResult vm_f32_size(uint32_t fiber_count, uint32_t mode, size_t *size);
 
 /**
- * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES. `size`
- * is that of the memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
- * VM_RESULT_SIZE. Rest or restore comes next. A muscle that was there is replaced.
+ * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * `size` is that of the memory. `error`, which may be null, has details of
+ * VM_RESULT_PARAMETER and VM_RESULT_SIZE. Rest or restore comes next. A muscle that was
+ * there is replaced.
  */
 VmResult vm_f32_build(VmMuscleF32 *muscle,
                       size_t size,
@@ -2521,14 +2523,14 @@ VmResult vm_f32_build_units(VmMuscleF32 *muscle,
                             VmError *error);
 
 /**
- * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
- * unchanged.
+ * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
+ * muscle is unchanged.
  */
 VmResult vm_f32_rest(VmMuscleF32 *muscle, float path_length);
 
 /**
- * Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
- * VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a muscle by one tick. Inputs out of range are clipped and flagged in
+ * `output->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
  */
 VmResult vm_f32_step(VmMuscleF32 *muscle, const VmInputF32 *input, VmOutputF32 *output);
 
@@ -2543,26 +2545,27 @@ VmResult vm_f32_observe(const VmMuscleF32 *muscle, VmOutputF32 *output);
 VmResult vm_f32_info(const VmMuscleF32 *muscle, VmInfoF32 *info);
 
 /**
- * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE if
- * there is no room for its words: see state_words of info.
+ * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE
+ * if there is no room for its words: see state_words of info.
  */
 VmResult vm_f32_save(const VmMuscleF32 *muscle, uint32_t *words, size_t count);
 
 /**
- * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
- * VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
+ * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time
+ * step, VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
  */
 VmResult vm_f32_restore(VmMuscleF32 *muscle, const uint32_t *words, size_t count);
 
 /**
- * Checksums of a muscle's coefficients, which never change, and of its state, which changes with
- * every tick. Firmware compares them to detect a flipped bit.
+ * Checksums of a muscle's coefficients, which never change, and of its state, which
+ * changes with every tick. Firmware compares them to detect a flipped bit.
  */
 VmResult vm_f32_checksums(const VmMuscleF32 *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
- * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length
+ * (L_ce0), a velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is
+ * no such type.
  */
 VmResult vm_f32_fiber_curves(const VmMuscleF32 *muscle,
                              uint32_t fiber,
@@ -2572,7 +2575,8 @@ VmResult vm_f32_fiber_curves(const VmMuscleF32 *muscle,
                              VmFiberCurvesF32 *curves);
 
 /**
- * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has
+ * the rest.
  */
 VmResult vm_f32_element_curves(const VmMuscleF32 *muscle,
                                float fascicle_length,
@@ -2589,8 +2593,8 @@ VmResult vm_f32_fatigue_build(VmFatigueF32 *fatigue,
                               VmError *error);
 
 /**
- * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for natural
- * recruitment). Gives the fitness, 0..1.
+ * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for
+ * natural recruitment). Gives the fitness, 0..1.
  */
 VmResult vm_f32_fatigue_advance(VmFatigueF32 *fatigue, const VmInputF32 *input, float *fitness);
 
@@ -2601,7 +2605,8 @@ VmResult vm_f32_fatigue_advance(VmFatigueF32 *fatigue, const VmInputF32 *input, 
 VmResult vm_f32_fatigued(VmOutputF32 *output, float fitness);
 
 /**
- * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time step.
+ * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time
+ * step.
  */
 VmResult vm_f32_fatigue_save(const VmFatigueF32 *fatigue, uint32_t *words, size_t count);
 
@@ -2619,7 +2624,8 @@ VmResult vm_f32_curve_build(VmCurveF32 *curve,
                             VmError *error);
 
 /**
- * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_ flags.
+ * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_
+ * flags.
  */
 VmResult vm_f32_curve_activation(const VmCurveF32 *curve,
                                  float amplitude_ma,
@@ -2675,20 +2681,20 @@ VmResult vm_f32_steady_activation_for(const VmSteadyF32 *steady,
                                       VmSteadyOutputF32 *output);
 
 /**
- * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
- * discrete mode, which has none.
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint.
+ * VM_RESULT_PARAMETER in a discrete mode, which has none.
  */
 VmResult vm_f32_stiffness(const VmMuscleF32 *muscle, float *stiffness);
 
 /**
- * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
- * is no such joint.
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if
+ * there is no such joint.
  */
 VmResult vm_f32_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
 
 /**
- * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
- * has the field, and the muscle's index.
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may
+ * be null, has the field, and the muscle's index.
  */
 VmResult vm_f32_joint_build(VmJointF32 *joint,
                             size_t size,
@@ -2696,8 +2702,8 @@ VmResult vm_f32_joint_build(VmJointF32 *joint,
                             VmError *error);
 
 /**
- * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
- * that of the angles; VM_RESULT_SIZE if the joint has more.
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged.
+ * `count` is that of the angles; VM_RESULT_SIZE if the joint has more.
  */
 VmResult vm_f32_joint_posture(const VmJointF32 *joint,
                               const float *angles_rad,
@@ -2705,8 +2711,8 @@ VmResult vm_f32_joint_posture(const VmJointF32 *joint,
                               VmPostureF32 *posture);
 
 /**
- * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
- * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture;
+ * flexion is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
  */
 VmResult vm_f32_joint_torques(const VmJointF32 *joint,
                               const VmPostureF32 *posture,
@@ -2716,8 +2722,8 @@ VmResult vm_f32_joint_torques(const VmJointF32 *joint,
                               size_t angle_count);
 
 /**
- * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
- * (vm_f32_stiffness); negative if the posture is unstable.
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their
+ * stiffnesses (vm_f32_stiffness); negative if the posture is unstable.
  */
 VmResult vm_f32_joint_stiffnesses(const VmJointF32 *joint,
                                   const VmPostureF32 *posture,
@@ -2739,8 +2745,8 @@ VmResult vm_f32_joint_checksum(const VmJointF32 *joint, uint32_t *checksum);
 VmResult vm_f32_prosthesis_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory.
+ * `error`, which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
  */
 VmResult vm_f32_prosthesis_build(VmProsthesisF32 *prosthesis,
                                  size_t size,
@@ -2754,8 +2760,9 @@ VmResult vm_f32_prosthesis_build(VmProsthesisF32 *prosthesis,
 VmResult vm_f32_prosthesis_rest(VmProsthesisF32 *prosthesis, float angle_rad);
 
 /**
- * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of
+ * range is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first
+ * rest or restore.
  */
 VmResult vm_f32_prosthesis_step(VmProsthesisF32 *prosthesis,
                                 const VmProsthesisInputF32 *input,
@@ -2792,8 +2799,9 @@ VmResult vm_f32_prosthesis_checksums(const VmProsthesisF32 *prosthesis,
 VmResult vm_f32_fes_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the
+ * memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE.
  */
 VmResult vm_f32_fes_build(VmFesF32 *fes,
                           size_t size,
@@ -2802,15 +2810,15 @@ VmResult vm_f32_fes_build(VmFesF32 *fes,
                           VmError *error);
 
 /**
- * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
- * muscles and a gain of 1.
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with
+ * rested muscles and a gain of 1.
  */
 VmResult vm_f32_fes_start(VmFesF32 *fes, float angle_rad);
 
 /**
- * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
- * restore.
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range
+ * is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start
+ * or restore.
  */
 VmResult vm_f32_fes_step(VmFesF32 *fes,
                          const VmTargetF32 *target,
@@ -2838,15 +2846,16 @@ VmResult vm_f32_fes_restore(VmFesF32 *fes, const uint32_t *words, size_t count);
 VmResult vm_f32_fes_checksums(const VmFesF32 *fes, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
- * this library has none of that kind.
+ * Bytes of memory that a muscle of `fiber_count` types in a mode needs.
+ * VM_RESULT_PARAMETER if this library has none of that kind.
  */
 VmResult vm_fixed_size(uint32_t fiber_count, uint32_t mode, size_t *size);
 
 /**
- * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES. `size`
- * is that of the memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
- * VM_RESULT_SIZE. Rest or restore comes next. A muscle that was there is replaced.
+ * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * `size` is that of the memory. `error`, which may be null, has details of
+ * VM_RESULT_PARAMETER and VM_RESULT_SIZE. Rest or restore comes next. A muscle that was
+ * there is replaced.
  */
 VmResult vm_fixed_build(VmMuscleFixed *muscle,
                         size_t size,
@@ -2867,14 +2876,14 @@ VmResult vm_fixed_build_units(VmMuscleFixed *muscle,
                               VmError *error);
 
 /**
- * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
- * unchanged.
+ * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
+ * muscle is unchanged.
  */
 VmResult vm_fixed_rest(VmMuscleFixed *muscle, int32_t path_length);
 
 /**
- * Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
- * VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a muscle by one tick. Inputs out of range are clipped and flagged in
+ * `output->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
  */
 VmResult vm_fixed_step(VmMuscleFixed *muscle, const VmInputFixed *input, VmOutputFixed *output);
 
@@ -2889,26 +2898,27 @@ VmResult vm_fixed_observe(const VmMuscleFixed *muscle, VmOutputFixed *output);
 VmResult vm_fixed_info(const VmMuscleFixed *muscle, VmInfoFixed *info);
 
 /**
- * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE if
- * there is no room for its words: see state_words of info.
+ * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE
+ * if there is no room for its words: see state_words of info.
  */
 VmResult vm_fixed_save(const VmMuscleFixed *muscle, uint32_t *words, size_t count);
 
 /**
- * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
- * VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
+ * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time
+ * step, VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
  */
 VmResult vm_fixed_restore(VmMuscleFixed *muscle, const uint32_t *words, size_t count);
 
 /**
- * Checksums of a muscle's coefficients, which never change, and of its state, which changes with
- * every tick. Firmware compares them to detect a flipped bit.
+ * Checksums of a muscle's coefficients, which never change, and of its state, which
+ * changes with every tick. Firmware compares them to detect a flipped bit.
  */
 VmResult vm_fixed_checksums(const VmMuscleFixed *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
- * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length
+ * (L_ce0), a velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is
+ * no such type.
  */
 VmResult vm_fixed_fiber_curves(const VmMuscleFixed *muscle,
                                uint32_t fiber,
@@ -2918,7 +2928,8 @@ VmResult vm_fixed_fiber_curves(const VmMuscleFixed *muscle,
                                VmFiberCurvesFixed *curves);
 
 /**
- * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has
+ * the rest.
  */
 VmResult vm_fixed_element_curves(const VmMuscleFixed *muscle,
                                  int32_t fascicle_length,
@@ -2935,8 +2946,8 @@ VmResult vm_fixed_fatigue_build(VmFatigueFixed *fatigue,
                                 VmError *error);
 
 /**
- * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for natural
- * recruitment). Gives the fitness, 0..1.
+ * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for
+ * natural recruitment). Gives the fitness, 0..1.
  */
 VmResult vm_fixed_fatigue_advance(VmFatigueFixed *fatigue,
                                   const VmInputFixed *input,
@@ -2949,7 +2960,8 @@ VmResult vm_fixed_fatigue_advance(VmFatigueFixed *fatigue,
 VmResult vm_fixed_fatigued(VmOutputFixed *output, int32_t fitness);
 
 /**
- * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time step.
+ * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time
+ * step.
  */
 VmResult vm_fixed_fatigue_save(const VmFatigueFixed *fatigue, uint32_t *words, size_t count);
 
@@ -2967,7 +2979,8 @@ VmResult vm_fixed_curve_build(VmCurveFixed *curve,
                               VmError *error);
 
 /**
- * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_ flags.
+ * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_
+ * flags.
  */
 VmResult vm_fixed_curve_activation(const VmCurveFixed *curve,
                                    int32_t amplitude_ma,
@@ -3023,20 +3036,20 @@ VmResult vm_fixed_steady_activation_for(const VmSteadyFixed *steady,
                                         VmSteadyOutputFixed *output);
 
 /**
- * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
- * discrete mode, which has none.
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint.
+ * VM_RESULT_PARAMETER in a discrete mode, which has none.
  */
 VmResult vm_fixed_stiffness(const VmMuscleFixed *muscle, int32_t *stiffness);
 
 /**
- * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
- * is no such joint.
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if
+ * there is no such joint.
  */
 VmResult vm_fixed_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
 
 /**
- * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
- * has the field, and the muscle's index.
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may
+ * be null, has the field, and the muscle's index.
  */
 VmResult vm_fixed_joint_build(VmJointFixed *joint,
                               size_t size,
@@ -3044,8 +3057,8 @@ VmResult vm_fixed_joint_build(VmJointFixed *joint,
                               VmError *error);
 
 /**
- * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
- * that of the angles; VM_RESULT_SIZE if the joint has more.
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged.
+ * `count` is that of the angles; VM_RESULT_SIZE if the joint has more.
  */
 VmResult vm_fixed_joint_posture(const VmJointFixed *joint,
                                 const int32_t *angles_rad,
@@ -3053,8 +3066,8 @@ VmResult vm_fixed_joint_posture(const VmJointFixed *joint,
                                 VmPostureFixed *posture);
 
 /**
- * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
- * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture;
+ * flexion is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
  */
 VmResult vm_fixed_joint_torques(const VmJointFixed *joint,
                                 const VmPostureFixed *posture,
@@ -3064,8 +3077,8 @@ VmResult vm_fixed_joint_torques(const VmJointFixed *joint,
                                 size_t angle_count);
 
 /**
- * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
- * (vm_fixed_stiffness); negative if the posture is unstable.
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their
+ * stiffnesses (vm_fixed_stiffness); negative if the posture is unstable.
  */
 VmResult vm_fixed_joint_stiffnesses(const VmJointFixed *joint,
                                     const VmPostureFixed *posture,
@@ -3087,8 +3100,8 @@ VmResult vm_fixed_joint_checksum(const VmJointFixed *joint, uint32_t *checksum);
 VmResult vm_fixed_prosthesis_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory.
+ * `error`, which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
  */
 VmResult vm_fixed_prosthesis_build(VmProsthesisFixed *prosthesis,
                                    size_t size,
@@ -3102,8 +3115,9 @@ VmResult vm_fixed_prosthesis_build(VmProsthesisFixed *prosthesis,
 VmResult vm_fixed_prosthesis_rest(VmProsthesisFixed *prosthesis, int32_t angle_rad);
 
 /**
- * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of
+ * range is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first
+ * rest or restore.
  */
 VmResult vm_fixed_prosthesis_step(VmProsthesisFixed *prosthesis,
                                   const VmProsthesisInputFixed *input,
@@ -3142,8 +3156,9 @@ VmResult vm_fixed_prosthesis_checksums(const VmProsthesisFixed *prosthesis,
 VmResult vm_fixed_fes_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the
+ * memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE.
  */
 VmResult vm_fixed_fes_build(VmFesFixed *fes,
                             size_t size,
@@ -3152,15 +3167,15 @@ VmResult vm_fixed_fes_build(VmFesFixed *fes,
                             VmError *error);
 
 /**
- * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
- * muscles and a gain of 1.
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with
+ * rested muscles and a gain of 1.
  */
 VmResult vm_fixed_fes_start(VmFesFixed *fes, int32_t angle_rad);
 
 /**
- * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
- * restore.
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range
+ * is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start
+ * or restore.
  */
 VmResult vm_fixed_fes_step(VmFesFixed *fes,
                            const VmTargetFixed *target,
@@ -3188,15 +3203,16 @@ VmResult vm_fixed_fes_restore(VmFesFixed *fes, const uint32_t *words, size_t cou
 VmResult vm_fixed_fes_checksums(const VmFesFixed *fes, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Bytes of memory that a muscle of `fiber_count` types in a mode needs. VM_RESULT_PARAMETER if
- * this library has none of that kind.
+ * Bytes of memory that a muscle of `fiber_count` types in a mode needs.
+ * VM_RESULT_PARAMETER if this library has none of that kind.
  */
 VmResult vm_f64_size(uint32_t fiber_count, uint32_t mode, size_t *size);
 
 /**
- * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES. `size`
- * is that of the memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
- * VM_RESULT_SIZE. Rest or restore comes next. A muscle that was there is replaced.
+ * Builds a muscle for a time step (s; 1e-4 to 2e-3) in VM_MODE_CONTINUOUS or VM_MODE_FES.
+ * `size` is that of the memory. `error`, which may be null, has details of
+ * VM_RESULT_PARAMETER and VM_RESULT_SIZE. Rest or restore comes next. A muscle that was
+ * there is replaced.
  */
 VmResult vm_f64_build(VmMuscleF64 *muscle,
                       size_t size,
@@ -3217,14 +3233,14 @@ VmResult vm_f64_build_units(VmMuscleF64 *muscle,
                             VmError *error);
 
 /**
- * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the muscle is
- * unchanged.
+ * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
+ * muscle is unchanged.
  */
 VmResult vm_f64_rest(VmMuscleF64 *muscle, double path_length);
 
 /**
- * Steps a muscle by one tick. Inputs out of range are clipped and flagged in `output->status`.
- * VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a muscle by one tick. Inputs out of range are clipped and flagged in
+ * `output->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
  */
 VmResult vm_f64_step(VmMuscleF64 *muscle, const VmInputF64 *input, VmOutputF64 *output);
 
@@ -3239,26 +3255,27 @@ VmResult vm_f64_observe(const VmMuscleF64 *muscle, VmOutputF64 *output);
 VmResult vm_f64_info(const VmMuscleF64 *muscle, VmInfoF64 *info);
 
 /**
- * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE if
- * there is no room for its words: see state_words of info.
+ * Saves a muscle's state, with a fingerprint of muscle, mode and time step. VM_RESULT_SIZE
+ * if there is no room for its words: see state_words of info.
  */
 VmResult vm_f64_save(const VmMuscleF64 *muscle, uint64_t *words, size_t count);
 
 /**
- * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time step,
- * VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
+ * Restores a saved state. VM_RESULT_OTHER_MUSCLE if it is of another muscle, mode or time
+ * step, VM_RESULT_STATE if it is out of range; the muscle is then unchanged.
  */
 VmResult vm_f64_restore(VmMuscleF64 *muscle, const uint64_t *words, size_t count);
 
 /**
- * Checksums of a muscle's coefficients, which never change, and of its state, which changes with
- * every tick. Firmware compares them to detect a flipped bit.
+ * Checksums of a muscle's coefficients, which never change, and of its state, which
+ * changes with every tick. Firmware compares them to detect a flipped bit.
  */
 VmResult vm_f64_checksums(const VmMuscleF64 *muscle, uint32_t *coefficients, uint32_t *state);
 
 /**
- * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length (L_ce0), a
- * velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is no such type.
+ * Curves of a fibre type (index from 0) as a tick computes them, at a fascicle length
+ * (L_ce0), a velocity (L_ce0/s) and a frequency (f_0.5). VM_RESULT_PARAMETER if there is
+ * no such type.
  */
 VmResult vm_f64_fiber_curves(const VmMuscleF64 *muscle,
                              uint32_t fiber,
@@ -3268,7 +3285,8 @@ VmResult vm_f64_fiber_curves(const VmMuscleF64 *muscle,
                              VmFiberCurvesF64 *curves);
 
 /**
- * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has the rest.
+ * Curves of the elements at a fascicle length (L_ce0) on a path, of which the tendon has
+ * the rest.
  */
 VmResult vm_f64_element_curves(const VmMuscleF64 *muscle,
                                double fascicle_length,
@@ -3285,8 +3303,8 @@ VmResult vm_f64_fatigue_build(VmFatigueF64 *fatigue,
                               VmError *error);
 
 /**
- * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for natural
- * recruitment). Gives the fitness, 0..1.
+ * Advances fatigue by the activation and stimulation frequency of a tick (100 pps for
+ * natural recruitment). Gives the fitness, 0..1.
  */
 VmResult vm_f64_fatigue_advance(VmFatigueF64 *fatigue, const VmInputF64 *input, double *fitness);
 
@@ -3297,7 +3315,8 @@ VmResult vm_f64_fatigue_advance(VmFatigueF64 *fatigue, const VmInputF64 *input, 
 VmResult vm_f64_fatigued(VmOutputF64 *output, double fitness);
 
 /**
- * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time step.
+ * Saves fatigue: 3 words, or 4 in fixed point, with a fingerprint of parameters and time
+ * step.
  */
 VmResult vm_f64_fatigue_save(const VmFatigueF64 *fatigue, uint64_t *words, size_t count);
 
@@ -3315,7 +3334,8 @@ VmResult vm_f64_curve_build(VmCurveF64 *curve,
                             VmError *error);
 
 /**
- * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_ flags.
+ * Activation (0..1) that a pulse of amplitude (mA) and width (us) recruits, and VM_PULSE_
+ * flags.
  */
 VmResult vm_f64_curve_activation(const VmCurveF64 *curve,
                                  double amplitude_ma,
@@ -3371,20 +3391,20 @@ VmResult vm_f64_steady_activation_for(const VmSteadyF64 *steady,
                                       VmSteadyOutputF64 *output);
 
 /**
- * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint. VM_RESULT_PARAMETER in a
- * discrete mode, which has none.
+ * Static stiffness of a muscle, F0/L_ce0, for the stiffness of its joint.
+ * VM_RESULT_PARAMETER in a discrete mode, which has none.
  */
 VmResult vm_f64_stiffness(const VmMuscleF64 *muscle, double *stiffness);
 
 /**
- * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if there
- * is no such joint.
+ * Bytes of memory that a joint of so many angles and muscles needs. VM_RESULT_PARAMETER if
+ * there is no such joint.
  */
 VmResult vm_f64_joint_size(uint32_t angle_count, uint32_t muscle_count, size_t *size);
 
 /**
- * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may be null,
- * has the field, and the muscle's index.
+ * Builds a joint. `size` is that of the memory. On VM_RESULT_PARAMETER `error`, which may
+ * be null, has the field, and the muscle's index.
  */
 VmResult vm_f64_joint_build(VmJointF64 *joint,
                             size_t size,
@@ -3392,8 +3412,8 @@ VmResult vm_f64_joint_build(VmJointF64 *joint,
                             VmError *error);
 
 /**
- * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged. `count` is
- * that of the angles; VM_RESULT_SIZE if the joint has more.
+ * Paths and moment arms at angles (rad), which are clipped to their ranges and flagged.
+ * `count` is that of the angles; VM_RESULT_SIZE if the joint has more.
  */
 VmResult vm_f64_joint_posture(const VmJointF64 *joint,
                               const double *angles_rad,
@@ -3401,8 +3421,8 @@ VmResult vm_f64_joint_posture(const VmJointF64 *joint,
                               VmPostureF64 *posture);
 
 /**
- * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture; flexion
- * is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
+ * Torque about each angle, N m, of the muscles' tendon forces relative to F0 in a posture;
+ * flexion is positive. VM_RESULT_SIZE if the joint has more muscles or angles.
  */
 VmResult vm_f64_joint_torques(const VmJointF64 *joint,
                               const VmPostureF64 *posture,
@@ -3412,8 +3432,8 @@ VmResult vm_f64_joint_torques(const VmJointF64 *joint,
                               size_t angle_count);
 
 /**
- * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their stiffnesses
- * (vm_f64_stiffness); negative if the posture is unstable.
+ * Stiffness about each angle, N m/rad, of the muscles' forces relative to F0 and their
+ * stiffnesses (vm_f64_stiffness); negative if the posture is unstable.
  */
 VmResult vm_f64_joint_stiffnesses(const VmJointF64 *joint,
                                   const VmPostureF64 *posture,
@@ -3435,8 +3455,8 @@ VmResult vm_f64_joint_checksum(const VmJointF64 *joint, uint32_t *checksum);
 VmResult vm_f64_prosthesis_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds a prosthesis for a time step (s; 1e-4 to 2e-3). `size` is that of the memory.
+ * `error`, which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
  */
 VmResult vm_f64_prosthesis_build(VmProsthesisF64 *prosthesis,
                                  size_t size,
@@ -3450,8 +3470,9 @@ VmResult vm_f64_prosthesis_build(VmProsthesisF64 *prosthesis,
 VmResult vm_f64_prosthesis_rest(VmProsthesisF64 *prosthesis, double angle_rad);
 
 /**
- * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first rest or restore.
+ * Steps a prosthesis by one tick: EMGs and angle to torque and stiffness. What is out of
+ * range is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first
+ * rest or restore.
  */
 VmResult vm_f64_prosthesis_step(VmProsthesisF64 *prosthesis,
                                 const VmProsthesisInputF64 *input,
@@ -3488,8 +3509,9 @@ VmResult vm_f64_prosthesis_checksums(const VmProsthesisF64 *prosthesis,
 VmResult vm_f64_fes_size(uint32_t fiber_count, size_t *size);
 
 /**
- * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the memory. `error`,
- * which may be null, has details of VM_RESULT_PARAMETER and VM_RESULT_SIZE.
+ * Builds an FES controller for a time step (s; 1e-4 to 2e-3). `size` is that of the
+ * memory. `error`, which may be null, has details of VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE.
  */
 VmResult vm_f64_fes_build(VmFesF64 *fes,
                           size_t size,
@@ -3498,15 +3520,15 @@ VmResult vm_f64_fes_build(VmFesF64 *fes,
                           VmError *error);
 
 /**
- * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with rested
- * muscles and a gain of 1.
+ * Starts an FES controller at an angle (rad), which is clipped to the joint's range, with
+ * rested muscles and a gain of 1.
  */
 VmResult vm_f64_fes_start(VmFesF64 *fes, double angle_rad);
 
 /**
- * Steps an FES controller by one tick: target and sensors to pulses. What is out of range is
- * clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start or
- * restore.
+ * Steps an FES controller by one tick: target and sensors to pulses. What is out of range
+ * is clipped and flagged in `command->status`. VM_RESULT_NOT_RESTED before the first start
+ * or restore.
  */
 VmResult vm_f64_fes_step(VmFesF64 *fes,
                          const VmTargetF64 *target,
