@@ -14,7 +14,10 @@ pub fn closed_loop(before: &str, study: &Study, rows: &[Row]) -> String {
     for task in Task::ALL {
         if study.tasks.contains(&task) {
             let of_task = rows.iter().filter(|row| row.task == task.name());
-            text.extend(of_task.map(|row| line(&[&row.cells()[..], &[tuning.clone()]].concat())));
+            text.extend(
+                of_task
+                    .map(|row| line(&[&row.cells()[..], std::slice::from_ref(&tuning)].concat())),
+            );
         } else {
             let begin = format!("| {} |", task.name());
             text.extend(before.lines().filter(|line| line.starts_with(&begin)).map(str::to_owned));
