@@ -1651,7 +1651,7 @@ typedef struct {
    */
   uint32_t modulated;
   /**
-   * Amplitude of VM_MODULATE_WIDTH, A; 1e-4 to 0.2.
+   * Amplitude of VM_MODULATE_WIDTH, A; 1e-4 to 0.2, and to 100 times the curve's saturation.
    */
   double amplitude_a;
   /**

@@ -44,7 +44,7 @@ bitflags::bitflags! {
 const GREATEST_AMPLITUDE: f64 = 500.0;
 const GREATEST_WIDTH: f64 = 5000.0;
 /// Greatest amplitude, in saturations. Pulses of usual width recruit all fibres with less.
-const GREATEST_STRENGTH: f64 = 100.0;
+pub(crate) const GREATEST_STRENGTH: f64 = 100.0;
 
 /// Parameters of the recruitment curve of an electrode and a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]

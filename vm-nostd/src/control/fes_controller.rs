@@ -229,12 +229,13 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let of = |muscle: usize| move |error| JointError { muscle: Some(muscle), error };
         let own = |error: ParameterError| JointError { muscle: None, error };
         params.validate_own().map_err(own)?;
-        for (index, (muscle, modulation)) in
-            params.muscles.iter().zip(&params.modulation).enumerate()
+        let driven = params.modulation.iter().zip(&params.electrodes);
+        for (index, (muscle, (modulation, curve))) in params.muscles.iter().zip(driven).enumerate()
         {
             // Before the joint, which would name what follows from a muscle's fields.
             muscle.validate().map_err(of(index))?;
-            modulation.validate().map_err(of(index))?;
+            curve.validate().map_err(of(index))?;
+            modulation.validate(curve).map_err(of(index))?;
         }
         let [flexor, extensor] = &params.muscles;
         let [of_flexor, of_extensor] = params.paths;

@@ -5,7 +5,7 @@ use super::limb::LimbParams;
 use super::path::{AngleRange, PathParams};
 use super::pi::PiParams;
 use crate::beyond_paper::fatigue::FatigueParams;
-use crate::beyond_paper::recruitment_curve::RecruitmentCurveParams;
+use crate::beyond_paper::recruitment_curve::{GREATEST_STRENGTH, RecruitmentCurveParams};
 use crate::error::{ParameterError, within};
 use crate::params::MuscleParams;
 
@@ -21,7 +21,7 @@ pub enum Measured {
 /// Which half of the pulse carries the command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Modulation {
-    /// The width, at an amplitude (A; 1e-4 to 0.2).
+    /// The width, at an amplitude (A; 1e-4 to 0.2, and to 100 times the electrode's saturation).
     Width {
         /// A.
         amplitude: f64,
@@ -34,9 +34,14 @@ pub enum Modulation {
 }
 
 impl Modulation {
-    pub(super) fn validate(&self) -> Result<(), ParameterError> {
+    /// The constant half must be one that the recruitment curve takes: it would compute the other
+    /// half for what it clips to.
+    pub(super) fn validate(&self, curve: &RecruitmentCurveParams) -> Result<(), ParameterError> {
         match *self {
-            Self::Width { amplitude } => within("modulation.amplitude", amplitude, 1e-4, 0.2),
+            Self::Width { amplitude } => {
+                let most = (GREATEST_STRENGTH * curve.saturation).min(0.2);
+                within("modulation.amplitude", amplitude, 1e-4, most)
+            }
             Self::Amplitude { width } => within("modulation.width", width, 2e-5, 1e-3),
         }
     }

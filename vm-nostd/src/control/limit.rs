@@ -9,11 +9,12 @@ use crate::tick::time_step::TimeStep;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CommandLimits {
-    /// Least command.
+    /// Least command; -30,000 to 30,000.
     pub least: f64,
-    /// Greatest command; at least the least.
+    /// Greatest command; the least to 30,000.
     pub most: f64,
-    /// Greatest change per second; more than 0. Less is smoother and slower.
+    /// Greatest change per second; 1.2e-4 per time step (0.12 at 1 ms) to 1e7. Less is smoother and
+    /// slower.
     pub rate: f64,
 }
 

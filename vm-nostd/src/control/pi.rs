@@ -97,11 +97,15 @@ impl<S: Scalar> PiState<S> {
 
 /// Errors are less than this: angles in rad, torques in 1,024 N m.
 const GREATEST_ERROR: f64 = 100.0;
+/// Range of the units.
+const UNITS: (f64, f64) = (1e-3, 1e6);
 /// An integral gain per tick is split: a share of 256 ticks, and the rest.
 const TICKS: f64 = 256.0;
 
 impl<S: Scalar> Pi<S> {
-    /// Feedback whose output counts in `unit` N m and whose error in `error_unit`.
+    /// Feedback whose output counts in `unit` N m and whose error in `error_unit` (rad or N m);
+    /// both 1e-3 to 1e6. The error has field, value and limit. Fixed point refuses gains whose
+    /// coefficients exceed 60.
     pub fn build(
         params: &PiParams,
         unit: f64,
@@ -109,13 +113,22 @@ impl<S: Scalar> Pi<S> {
         step: TimeStep,
     ) -> Result<Self, ParameterError> {
         params.validate()?;
+        within("pi: unit of the output, N m", unit, UNITS.0, UNITS.1)?;
+        within("pi: unit of the error", error_unit, UNITS.0, UNITS.1)?;
         let scale = error_unit / unit;
+        // In fixed point greater coefficients would saturate.
+        let coefficient = |field, gain: f64, factor: f64, most: f64| {
+            within(field, gain, 0.0, Scalar::min(S::LARGEST_COEFFICIENT / factor, most))?;
+            Ok(S::from_f64(gain * factor))
+        };
+        let sum = scale * TICKS * step.seconds();
+        let derivative = scale / params.derivative_filter;
         Ok(Self {
-            proportional: S::from_f64(params.proportional * scale),
-            integral: S::from_f64(params.integral * scale * TICKS * step.seconds()),
+            proportional: coefficient("pi.proportional", params.proportional, scale, 1e3)?,
+            integral: coefficient("pi.integral", params.integral, sum, 1e4)?,
             share: S::share(1.0 / TICKS),
-            most: S::from_f64(params.most / unit),
-            derivative: S::from_f64(params.derivative * scale / params.derivative_filter),
+            most: coefficient("pi.most", params.most, 1.0 / unit, 1e3)?,
+            derivative: coefficient("pi.derivative", params.derivative, derivative, 100.0)?,
             filter: Lag::new(params.derivative_filter, step),
         })
     }
@@ -125,8 +138,10 @@ impl<S: Scalar> Pi<S> {
         PiState { integral: S::ZERO.lag_state(), filtered: S::ZERO.lag_state() }
     }
 
-    /// The feedback of an error.
+    /// The feedback of an error, which is clipped to ±100 units; one that is not finite counts as 0.
     pub fn step(&self, state: &mut PiState<S>, error: S, saturated: Saturated) -> S {
+        let most = S::from_f64(GREATEST_ERROR);
+        let error = if error.is_finite() { error.max(-most).min(most) } else { S::ZERO };
         let pushes_on =
             (saturated.above && error > S::ZERO) || (saturated.below && error < S::ZERO);
         if !pushes_on {

@@ -41,7 +41,7 @@ pub struct VmLimb {
 pub struct VmModulation {
     /// VM_MODULATE_WIDTH (0) or VM_MODULATE_AMPLITUDE.
     pub modulated: u32,
-    /// Amplitude of VM_MODULATE_WIDTH, A; 1e-4 to 0.2.
+    /// Amplitude of VM_MODULATE_WIDTH, A; 1e-4 to 0.2, and to 100 times the curve's saturation.
     pub amplitude_a: f64,
     /// Width of VM_MODULATE_AMPLITUDE, s; 2e-5 to 1e-3.
     pub width_s: f64,
