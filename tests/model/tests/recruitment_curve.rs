@@ -200,8 +200,19 @@ fn invalid_pulses_are_clipped_and_flagged() {
     );
     assert_eq!(
         refused(RecruitmentCurveParams { saturation: 4e-3, ..p }),
-        "saturation = 0.004: must be between 0.004200000000000001 and 0.2"
+        "saturation = 0.004: must be between 0.0042 and 0.2"
     );
     let not_a_number = RecruitmentCurveParams { threshold: f64::NAN, ..p };
     assert!(refused(not_a_number).starts_with("threshold = NaN"));
+}
+
+/// A limit that is computed refuses nothing that it allows in decimals.
+#[test]
+fn a_saturation_of_1_05_thresholds_is_enough() {
+    for microamperes in (100..10_000).step_by(20) {
+        let [threshold, saturation] =
+            [100 * microamperes, 105 * microamperes].map(|parts| f64::from(parts) / 1e8);
+        let params = RecruitmentCurveParams { threshold, saturation, chronaxie: 2e-4, slope: 2.0 };
+        assert_eq!(params.validate(), Ok(()));
+    }
 }

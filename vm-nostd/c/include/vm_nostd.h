@@ -1479,11 +1479,12 @@ typedef struct {
  */
 typedef struct {
   /**
-   * Mean rectified EMG at rest, mV; 0 to 10.
+   * Mean rectified EMG at rest, mV; 0 to 9.
    */
   double rest_mv;
   /**
-   * Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 more than at rest, to 10.
+   * Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 and 5 % more than at rest,
+   * to 10.
    */
   double maximal_mv;
   /**
@@ -1513,7 +1514,7 @@ typedef struct {
    */
   double most_nm;
   /**
-   * Greatest change, N m/s; more than 0, to 1e7.
+   * Greatest change, N m/s; 1.2e-4 per time step (0.12 at 1 ms) to 1e7.
    */
   double rate_nm_per_s;
 } VmTorqueLimits;
@@ -1531,7 +1532,7 @@ typedef struct {
    */
   double most_nm_per_rad;
   /**
-   * Greatest change, N m/rad/s; more than 0, to 1e7.
+   * Greatest change, N m/rad/s; 1.2e-4 per time step (0.12 at 1 ms) to 1e7.
    */
   double rate_nm_per_rad_s;
 } VmStiffnessLimits;

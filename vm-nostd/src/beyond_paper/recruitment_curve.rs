@@ -65,7 +65,9 @@ impl RecruitmentCurveParams {
     /// Validates the parameters; the error has field, value and limit.
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("threshold", self.threshold, 1e-5, 0.2)?;
-        within("saturation", self.saturation, 1.05 * self.threshold, 0.2)?;
+        // Rounded down, so that 1.05 thresholds in decimals are enough.
+        let least = 1.05 * self.threshold * (1.0 - f64::EPSILON);
+        within("saturation", self.saturation, least, 0.2)?;
         within("chronaxie", self.chronaxie, 5e-5, 1e-3)?;
         within("slope", self.slope, 1.0, 10.0)
     }

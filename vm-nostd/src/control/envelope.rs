@@ -22,9 +22,10 @@ use crate::tick::time_step::TimeStep;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EnvelopeParams {
-    /// Mean rectified EMG at rest, mV; 0 to 10. More ignores more noise, and weak contractions.
+    /// Mean rectified EMG at rest, mV; 0 to 9. More ignores more noise, and weak contractions.
     pub rest: f64,
-    /// Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 more than at rest, to 10.
+    /// Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 and 5 % more than at rest,
+    /// to 10.
     pub maximal: f64,
     /// Cutoff f_c, Hz; 0.5 to 20. Higher follows faster and lets more ripple through.
     pub cutoff_frequency: f64,
@@ -35,11 +36,19 @@ pub struct EnvelopeParams {
     pub shape: f64,
 }
 
+/// Least maximal EMG, in EMGs at rest: with less the state would hold many ranges of noise.
+const LEAST_SIGNAL: f64 = 1.05;
+/// From this shape to 0 a parabola differs from (exp(A u) - 1)/(exp(A) - 1) by less than 1e-5, and
+/// 1/(exp(A) - 1) exceeds what fixed point holds.
+const NEARLY_STRAIGHT: f64 = -0.03;
+
 impl EnvelopeParams {
     /// Validates for a delay line of so many ticks; the error has field, value and limit.
     pub fn validate(&self, step: TimeStep, line: usize) -> Result<(), ParameterError> {
-        within("envelope.rest", self.rest, 0.0, 10.0)?;
-        within("envelope.maximal", self.maximal, self.rest + 1e-3, 10.0)?;
+        within("envelope.rest", self.rest, 0.0, 9.0)?;
+        // Rounded down, so that 5 % more in decimals is enough.
+        let least = (self.rest + 1e-3).max(LEAST_SIGNAL * self.rest * (1.0 - f64::EPSILON));
+        within("envelope.maximal", self.maximal, least, 10.0)?;
         within("envelope.cutoff_frequency", self.cutoff_frequency, 0.5, 20.0)?;
         within("envelope.delay", self.delay, 0.0, line as f64 * step.seconds())?;
         within("envelope.shape", self.shape, -3.0, 0.0)
@@ -55,13 +64,16 @@ pub struct Envelope<S: Scalar, const D: usize> {
     rest: S,
     greatest: S,
     ticks: usize,
-    /// A, and 1/(exp(A) - 1).
+    /// A, and 1/(exp(A) - 1); none if a parabola does.
     shape: Option<(S, S)>,
+    /// A/2, of the parabola u (1 + A/2 (u - 1)).
+    bend: S,
 }
 
 impl<S: Scalar, const D: usize> Summed for Envelope<S, D> {
     fn sum(&self, checksum: &mut Checksum) {
-        let Self { lag, per_range, rest, greatest, ticks, shape } = self;
+        let Self { lag, per_range, rest, greatest, ticks, shape, bend } = self;
+        bend.sum(checksum);
         greatest.sum(checksum);
         lag.sum(checksum);
         per_range.sum(checksum);
@@ -94,7 +106,8 @@ impl<S: Scalar, const D: usize> EnvelopeState<S, D> {
     }
 }
 
-/// Greatest rectified EMG, in ranges from rest to maximal: artefacts are clipped to it.
+/// Greatest rectified EMG beyond that at rest, in ranges from rest to maximal: artefacts are clipped
+/// to it.
 const GREATEST: f64 = 8.0;
 
 impl<S: Scalar, const D: usize> Envelope<S, D> {
@@ -109,10 +122,11 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
             lag: Lag::new(time, step),
             per_range: S::per_quantity(1.0 / range),
             rest: S::from_f64(params.rest / range),
-            greatest: S::from_f64(GREATEST),
+            greatest: S::from_f64(params.rest / range + GREATEST),
             ticks: (params.delay / step.seconds() + 0.5) as usize,
-            shape: (shape < -1e-6)
+            shape: (shape <= NEARLY_STRAIGHT)
                 .then(|| (S::from_f64(shape), S::from_f64(1.0 / (Scalar::exp(shape) - 1.0)))),
+            bend: S::from_f64(0.5 * shape),
         })
     }
 
@@ -122,7 +136,8 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
     }
 
     /// Takes a sample (mV) and returns the activation, 0..1, and whether the sample was not finite
-    /// (then the envelope decays as at rest) or clipped to 8 times the normalisation range.
+    /// (then the envelope decays as at rest) or clipped to 8 times the range from rest
+    /// to maximal, beyond rest.
     pub fn step(&self, state: &mut EnvelopeState<S, D>, sample: S::Quantity) -> (S, bool) {
         let finite = S::quantity_is_finite(sample);
         let magnitude =
@@ -136,7 +151,7 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
         let now = (S::of(second) - self.rest).max(S::ZERO).min(S::ONE);
         let delayed = self.delayed(state, now);
         let activation = match self.shape {
-            None => delayed,
+            None => delayed * (S::ONE + self.bend * (delayed - S::ONE)),
             Some((exponent, factor)) => ((exponent * delayed).exp() - S::ONE) * factor,
         };
         (activation.max(S::ZERO).min(S::ONE), clipped || !finite)

@@ -14,9 +14,10 @@ pub const VM_DELAY_TICKS: usize = 100;
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct VmEnvelope {
-    /// Mean rectified EMG at rest, mV; 0 to 10.
+    /// Mean rectified EMG at rest, mV; 0 to 9.
     pub rest_mv: f64,
-    /// Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 more than at rest, to 10.
+    /// Mean rectified EMG of a maximal voluntary contraction, mV; 0.001 and 5 % more than at rest,
+    /// to 10.
     pub maximal_mv: f64,
     /// Cutoff, Hz; 0.5 to 20.
     pub cutoff_frequency_hz: f64,
@@ -34,7 +35,7 @@ pub struct VmTorqueLimits {
     pub least_nm: f64,
     /// Greatest torque, N m; at least the least, to 30,000.
     pub most_nm: f64,
-    /// Greatest change, N m/s; more than 0, to 1e7.
+    /// Greatest change, N m/s; 1.2e-4 per time step (0.12 at 1 ms) to 1e7.
     pub rate_nm_per_s: f64,
 }
 
@@ -46,7 +47,7 @@ pub struct VmStiffnessLimits {
     pub least_nm_per_rad: f64,
     /// Greatest stiffness, N m/rad; at least the least, to 30,000.
     pub most_nm_per_rad: f64,
-    /// Greatest change, N m/rad/s; more than 0, to 1e7.
+    /// Greatest change, N m/rad/s; 1.2e-4 per time step (0.12 at 1 ms) to 1e7.
     pub rate_nm_per_rad_s: f64,
 }
 
