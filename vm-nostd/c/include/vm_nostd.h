@@ -1634,7 +1634,8 @@ typedef struct {
    */
   double damping_nm_s_per_rad;
   /**
-   * Weight times the distance of its centre, N m; 0 to 200.
+   * Weight times the distance of its centre, N m; 0 to 200, and 0 where the joint's range is
+   * wider than 4 rad.
    */
   double gravity_nm;
   /**

@@ -17,7 +17,8 @@ pub struct LimbParams {
     pub inertia: f64,
     /// Damping B, N m s/rad; 0 to 100.
     pub damping: f64,
-    /// Weight times the distance of its centre G, N m; 0 to 200.
+    /// Weight times the distance of its centre G, N m; 0 to 200, and 0 where the joint's range is
+    /// wider than 4 rad.
     pub gravity: f64,
     /// Angle at which the limb hangs straight down, rad; -6.3 to 6.3.
     pub hanging_angle: f64,
@@ -36,6 +37,8 @@ impl LimbParams {
 /// Terms of the sine's series: over a range of 4 rad the rest is below 3e-4 of G, over 2.5 rad
 /// 3e-6.
 const TERMS: usize = 10;
+/// Widest range of a limb that has weight, rad.
+const WIDEST: f64 = 4.0;
 
 /// A limb, ready for a tick; torques count in a unit.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +59,9 @@ impl<S: Scalar> Limb<S> {
         unit: f64,
     ) -> Result<Self, ParameterError> {
         params.validate()?;
+        if params.gravity > 0.0 {
+            within("angle_range.most", range.most, range.least, range.least + WIDEST)?;
+        }
         let middle = range.middle() - params.hanging_angle;
         // sin and cos of the middle by tan of its half, kept away from its pole.
         let half = tangent(0.5 * middle);

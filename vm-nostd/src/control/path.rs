@@ -47,11 +47,16 @@ impl AngleRange {
         0.5 * (self.most - self.least)
     }
 
-    /// Half of the range and a little: in fixed point polynomials are of numbers below 1.
+    /// Half of the range and a little: in fixed point polynomials are of numbers below 1, and of 1
+    /// they would take -1. Of a narrow range the little is 4 ULP, for an end and the middle are
+    /// rounded.
     pub(super) fn reach(&self) -> f64 {
-        self.half() * (1.0 + 1e-6)
+        Scalar::max(self.half() * (1.0 + 1e-6), self.half() + 4.0 * ULP)
     }
 }
+
+/// Of an angle in fixed point, rad.
+const ULP: f64 = 1.0 / 16_777_216.0;
 
 /// Radians of a degree.
 pub(crate) const RADIANS: f64 = core::f64::consts::PI / 180.0;

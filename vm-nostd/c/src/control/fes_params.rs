@@ -29,7 +29,8 @@ pub struct VmLimb {
     pub inertia_kg_m2: f64,
     /// Damping, N m s/rad; 0 to 100.
     pub damping_nm_s_per_rad: f64,
-    /// Weight times the distance of its centre, N m; 0 to 200.
+    /// Weight times the distance of its centre, N m; 0 to 200, and 0 where the joint's range is
+    /// wider than 4 rad.
     pub gravity_nm: f64,
     /// Angle at which the limb hangs straight down, rad; -6.3 to 6.3.
     pub hanging_angle_rad: f64,
