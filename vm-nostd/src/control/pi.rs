@@ -12,7 +12,8 @@ use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
-/// Gains of the feedback.
+/// Gains of the feedback. Fixed point refuses those whose coefficients exceed 60: of torques, k_p
+/// above 60, k_i above 0.23 per time step, k_d above 60 T_d; of angles, all within these ranges fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PiParams {
