@@ -13,7 +13,8 @@ use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
 /// Gains of the feedback. Fixed point refuses those whose coefficients exceed 60: of torques, k_p
-/// above 60, k_i above 0.23 per time step, k_d above 60 T_d; of angles, all within these ranges fit.
+/// above 60, k_i above 0.23 over the time step, k_d above 60 T_d; of angles, all in these
+/// ranges fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PiParams {
@@ -139,7 +140,7 @@ impl<S: Scalar> Pi<S> {
         PiState { integral: S::ZERO.lag_state(), filtered: S::ZERO.lag_state() }
     }
 
-    /// The feedback of an error, which is clipped to ±100 units; one that is not finite counts as 0.
+    /// The feedback of an error, clipped to ±100 units; one that is not finite counts as 0.
     pub fn step(&self, state: &mut PiState<S>, error: S, saturated: Saturated) -> S {
         let most = S::from_f64(GREATEST_ERROR);
         let error = if error.is_finite() { error.max(-most).min(most) } else { S::ZERO };
