@@ -106,8 +106,8 @@ impl<S: Scalar, const D: usize> EnvelopeState<S, D> {
     }
 }
 
-/// Greatest rectified EMG beyond that at rest, in ranges from rest to maximal: artefacts are clipped
-/// to it.
+/// Greatest rectified EMG beyond that at rest, in ranges from rest to maximal: artefacts are
+/// clipped to it.
 const GREATEST: f64 = 8.0;
 
 impl<S: Scalar, const D: usize> Envelope<S, D> {
