@@ -216,7 +216,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     }
 
     fn visit_expr_binary(&mut self, binary: &'ast syn::ExprBinary) {
-        let start = self.range(&binary.op).start;
+        let start = self.range(binary.op).start;
         let site = if Self::expressions_chain(binary) {
             Site::Chained
         } else {
