@@ -216,7 +216,8 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     }
 
     fn visit_expr_binary(&mut self, binary: &'ast syn::ExprBinary) {
-        let start = self.range(binary.op).start;
+        let operator = &binary.op;
+        let start = self.range(operator).start;
         let site = if Self::expressions_chain(binary) {
             Site::Chained
         } else {
