@@ -93,6 +93,8 @@ static int A(anything)(void) {
         OK(F(prosthesis_save)(&prosthesis, words, WORDS(PROSTHESIS)));
         OK(F(prosthesis_restore)(&prosthesis, words, WORDS(PROSTHESIS)));
     }
+    /* In fixed point 2 s over a filter of 0.02 s is refused for torques. */
+    of_fes.feedback.derivative_s = 1.0;
     for (of_fes.measured = VM_MEASURED_ANGLE; of_fes.measured <= VM_MEASURED_TORQUE; of_fes.measured++) {
         OK(F(fes_build)(&fes, sizeof fes, &of_fes, 1e-3, 0));
         for (unsigned index = 0; index < DRAWS / 4; index++) {

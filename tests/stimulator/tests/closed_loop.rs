@@ -212,7 +212,7 @@ fn controllers_are_refused_by_name() {
         ),
         (
             |c| c.modulation[0] = Modulation::Width { amplitude_ua: 99 },
-            "modulation.amplitude = 0.000099: must be between 0.0001 and 0.2",
+            "muscles[0].modulation.amplitude = 0.000099: must be between 0.0001 and 0.2",
         ),
         (|c| c.limb.inertia = -1.0, "limb.inertia = -1: must be between 0 and 10"),
         (|c| c.lead_filter_time = 1e-3, "muscles[0].lead.filter_time = 0.001: must be between"),
