@@ -99,7 +99,7 @@ class ControlStatus(IntFlag):
 
     MEASURED_NOT_FINITE = 1 << 0
     TARGET_INVALID = 1 << 1
-    ANGLE_CLIPPED = 1 << 2
+    MEASURED_CLIPPED = 1 << 2
     TORQUE_LIMITED = 1 << 3
     UNREACHABLE = 1 << 4
     LEAD_CLIPPED = 1 << 5
