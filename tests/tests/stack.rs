@@ -11,6 +11,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use stimulator_tests::host::{READINGS, fes};
+use stimulator_tests::joint;
 use system_tests::debugger::{Debugger, Port};
 use system_tests::machine::{Machine, Said, drive, image, kept_alive, symbol};
 use vm_nostd::RecruitmentCurveParams;
@@ -126,6 +127,14 @@ fn traffic() -> Vec<Request> {
         // Refused: electrodes have these channels.
         drive(),
     ]);
+    // Building a controller goes deepest.
+    let [flexor, extensor] = joint::muscles();
+    requests.extend([
+        // First the one whose channels are free.
+        Request::Upload { place: 1, upload: extensor },
+        Request::Upload { place: 0, upload: flexor },
+        Request::Control(Some(joint::control())),
+    ]);
     requests
 }
 
@@ -162,7 +171,8 @@ fn the_computed_stack_bounds_the_measured_stack() {
     });
     let (mut machine, mut debugger) = painted;
     let said = machine.script(&traffic());
-    assert!(said[..8].iter().all(|one| *one == Said::Done), "{said:?}");
+    let [first, last] = [&said[..8], &said[said.len() - 3..]];
+    assert!(first.iter().chain(last).all(|one| *one == Said::Done), "{said:?}");
     debugger.stop();
     let memory = debugger.read(room.start.into(), length);
     let untouched = memory.iter().take_while(|&&byte| byte == PAINT).count();
