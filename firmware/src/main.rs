@@ -183,6 +183,9 @@ mod app {
             {
                 to_host.write(byte);
             }
+            if to_host.is_emulated() && server.is_idle() {
+                rtic::pend(pac::Interrupt::USART1);
+            }
             if server.is_idle() && !arrived.ready() {
                 cortex_m::asm::wfi();
             }
