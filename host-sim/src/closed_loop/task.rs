@@ -46,11 +46,11 @@ impl Task {
         }
     }
 
-    /// The limb of a body of 75 kg and 1.75 m by Winter's fractions (Biomechanics and Motor Control
-    /// of Human Movement; cited from memory): foot 0.0145 of the mass with its centre 6 cm from the
-    /// ankle (assumed), leg and foot 0.061 at 0.606 of 0.43 m, forearm and hand 0.022 at 0.682 of
-    /// 0.256 m. Damping is assumed. The patient sits; the shank of a swinging leg is taken as
-    /// upright.
+    /// The limb of a body of 75 kg and 1.75 m by Dempster's fractions as Winter has them
+    /// (Biomechanics and Motor Control of Human Movement): foot 0.0145 of the mass, its centre 6 cm
+    /// and its radius of gyration 9 cm from the ankle (assumed), leg and foot 0.061 at 0.606 of
+    /// 0.43 m (0.735), forearm and hand 0.022 at 0.682 of 0.256 m (0.827). Damping is assumed. The
+    /// patient sits; the shank of a swinging leg is taken as upright.
     pub fn limb(self) -> LimbParams {
         const G: f64 = 9.81;
         match self {

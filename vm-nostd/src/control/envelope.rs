@@ -6,7 +6,7 @@
 //!
 //! a = (exp(A u) - 1)/(exp(A) - 1), and a = u for A = 0
 //!
-//! (Buchanan, Lloyd, Manal & Besier, J. Appl. Biomech. 20 (2004) 367-395; cited from memory).
+//! (Buchanan, Lloyd, Manal & Besier, J. Appl. Biomech. 20 (2004) 367-395).
 
 use crate::checksum::{Checksum, Summed};
 use crate::error::{ParameterError, within};

@@ -6,10 +6,10 @@
 //! train: until the second pulse of a train the frequency is 0.
 //!
 //! **What the model can claim.** A periodic train gives its own frequency. A doublet at the start
-//! of a train makes the force rise faster, as published (Binder-Macleod & Kesar, Muscle Nerve 31
-//! (2005) 681-693; cited from memory): Af is taken at the high frequency. What it cannot show: the
-//! twitch of a single pulse, summation within one interval, the catch-like property (force that
-//! stays higher after a doublet).
+//! of a train makes the force rise faster, as published (Binder-Macleod & Lee, J. Appl. Physiol. 80
+//! (1996) 2051, abstract: human quadriceps, most with a first interval of 5 ms): Af is taken at the
+//! high frequency. What it cannot show: the twitch of a single pulse, summation within one
+//! interval, the catch-like property (force that stays higher after a doublet).
 
 use crate::checksum::summed;
 use crate::error::{ParameterError, within};

@@ -5,8 +5,8 @@
 //! L_mt = length + Σ_j Σ_k terms_jk d_j^k + product d_1 d_2,
 //!
 //! and the moment arm about joint j is minus the derivative, r_j = -dL_mt/dq_j (virtual work: An et
-//! al., J. Biomech. Eng. 106 (1984) 280-282; cited from memory). It is positive where the muscle
-//! flexes, towards greater angles.
+//! al., J. Biomech. Eng. 106 (1984) 280-282, tendon-joint displacement). It is positive where the
+//! muscle flexes, towards greater angles.
 
 use crate::checksum::summed;
 use crate::error::{Limit, ParameterError, within};
