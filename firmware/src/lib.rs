@@ -16,13 +16,9 @@ extern crate std;
 
 mod between;
 mod config;
-#[cfg(feature = "board")]
-pub mod end;
 mod hard_tick;
 pub mod link;
 mod pulse_timer;
-mod rig;
-mod scenario;
 
 pub use between::guarded::{Guarded, Sum};
 pub use between::limits::{LimitError, Limits};
@@ -48,5 +44,3 @@ pub use link::storage::{MOST_STORED, NotStored, SlotBuffer, Slots};
 pub use pulse_timer::output::{Bridge, OutputError, OutputStage};
 pub use pulse_timer::pulses::Pulses;
 pub use pulse_timer::schedule::Schedule;
-pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};
-pub use scenario::{Scenario, TICKS};

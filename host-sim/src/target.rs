@@ -1,4 +1,4 @@
-//! Builds the firmware's programs for the target and runs them in QEMU.
+//! Builds programs for a core, the stimulator or those of `vm-nostd/cores`, and runs them in QEMU.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -10,16 +10,32 @@ pub struct Board {
     pub machine: &'static str,
     /// The target triple of its core.
     pub triple: &'static str,
+    /// The core that the compiler schedules for; `None`: as `.cargo/config.toml` says.
+    pub core: Option<&'static str>,
+}
+
+impl Board {
+    const fn new(machine: &'static str, triple: &'static str) -> Self {
+        Self { machine, triple, core: None }
+    }
 }
 
 /// STM32F405, a Cortex-M4F: the board of the firmware.
-pub const STM32F405: Board = Board { machine: "netduinoplus2", triple: "thumbv7em-none-eabihf" };
+pub const STM32F405: Board = Board::new("netduinoplus2", "thumbv7em-none-eabihf");
 /// Arm's MPS2 board with a Cortex-M3: no floating-point unit.
-pub const CORTEX_M3: Board = Board { machine: "mps2-an385", triple: "thumbv7m-none-eabi" };
+pub const CORTEX_M3: Board = Board::new("mps2-an385", "thumbv7m-none-eabi");
 /// nRF51, a Cortex-M0: no floating-point unit and no long multiplication.
-pub const CORTEX_M0: Board = Board { machine: "microbit", triple: "thumbv6m-none-eabi" };
+pub const CORTEX_M0: Board = Board::new("microbit", "thumbv6m-none-eabi");
+/// Arm's MPS2 board with a Cortex-M7.
+pub const CORTEX_M7: Board =
+    Board { core: Some("cortex-m7"), ..Board::new("mps2-an500", "thumbv7em-none-eabihf") };
+/// Arm's MPS2 board with a Cortex-M33.
+pub const CORTEX_M33: Board =
+    Board { core: Some("cortex-m33"), ..Board::new("mps2-an505", "thumbv8m.main-none-eabihf") };
 /// The stimulator's program.
 pub const STIMULATOR: &str = "firmware";
+/// The program that `vm cycles` measures.
+pub const BENCH: &str = "bench";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
@@ -34,8 +50,8 @@ pub enum TargetError {
         /// Error of rustup.
         message: String,
     },
-    /// The firmware did not build.
-    #[error("{program} of the firmware does not build:\n{message}")]
+    /// The program did not build.
+    #[error("the program {program} does not build:\n{message}")]
     Build {
         /// Which program.
         program: String,
@@ -80,7 +96,7 @@ fn ensure_library(triple: &'static str) -> Result<(), TargetError> {
     Err(TargetError::NoLibrary { triple, message })
 }
 
-/// Builds a program of the firmware for a board and returns its image. `variables` are set in the
+/// Builds a program for a board and returns its image. `variables` are set in the
 /// build's environment.
 pub fn build(
     board: Board,
@@ -89,15 +105,24 @@ pub fn build(
 ) -> Result<PathBuf, TargetError> {
     let triple = board.triple;
     ensure_library(triple)?;
-    // Only the stimulator needs its chip.
-    let feature = if program == STIMULATOR { "board-stm32f405" } else { "board" };
-    // A separate target folder: a running cargo may lock the host's.
-    let folder = root().join("target/on-target");
+    let (package, feature) = match program {
+        STIMULATOR => (program, "board-stm32f405"),
+        BENCH => ("vm-nostd-cores", "bench"),
+        _ => ("vm-nostd-cores", "core"),
+    };
+    // Apart from the host's, which a running cargo may lock; boards differ in their memories.
+    let folder = root().join("target/on-target").join(board.machine);
+    let flags = board.core.map(|core| {
+        let triple = triple.to_uppercase().replace(['-', '.'], "_");
+        (format!("CARGO_TARGET_{triple}_RUSTFLAGS"), format!("-Ctarget-cpu={core}"))
+    });
     let output = Command::new(option_env!("CARGO").unwrap_or("cargo"))
-        .args(["build", "--release", "--package", "firmware", "--features", feature])
+        .args(["build", "--release", "--package", package, "--features", feature])
         .args(["--target", triple, "--bin", program, "--target-dir"])
         .arg(&folder)
         .envs(variables.iter().copied())
+        .envs(flags)
+        .env("VM_MACHINE", board.machine)
         // Incremental builds inline less: cycles would depend on the caller's environment.
         .env("CARGO_INCREMENTAL", "0")
         .current_dir(root())

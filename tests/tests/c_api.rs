@@ -112,11 +112,12 @@ fn played<S: Scalar<Bits = u32>>(inputs: &[Input<S>], fes: bool) -> Vec<u8> {
         ]
     };
     let all: Vec<[u32; 5]> = if fes {
-        let muscle = FesMuscle::<S, 2>::build(&firmware::MUSCLE, step).expect("a muscle");
+        let muscle = FesMuscle::<S, 2>::build(&vm_nostd_cores::MUSCLE, step).expect("a muscle");
         let mut state = muscle.rest(first.path_length).expect("a path");
         rest.iter().map(|&input| words(muscle.step(&mut state, input))).collect()
     } else {
-        let muscle = ContinuousMuscle::<S, 2>::build(&firmware::MUSCLE, step).expect("a muscle");
+        let muscle =
+            ContinuousMuscle::<S, 2>::build(&vm_nostd_cores::MUSCLE, step).expect("a muscle");
         let mut state = muscle.rest(first.path_length).expect("a path");
         rest.iter().map(|&input| words(muscle.step(&mut state, input))).collect()
     };

@@ -1,7 +1,6 @@
 //! The longest path of the muscle's parameters scales the parallel elastic element but does not
 //! limit paths: they are accepted to the end of the validity range.
 
-use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};
 use host_sim::metrics::{ForceError, forces};
 use host_sim::model_muscle;
@@ -9,6 +8,7 @@ use host_sim::reference::{Input, Mode, Muscle};
 use host_sim::scenario::paper_muscle;
 use host_sim::trace::InputTrace;
 use vm_nostd::{ContinuousMuscle, Fixed, Scalar, Status, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 /// Largest error (% of F0) and flags of an arithmetic against the reference.
 fn error(muscle: &Muscle, mode: Mode, arithmetic: Arithmetic, trace: &InputTrace) -> (f64, Status) {

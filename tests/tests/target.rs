@@ -3,7 +3,6 @@
 //! Without the thumb target or QEMU these tests print SKIPPED; with `VM_REQUIRE_TARGET` set, as in
 //! CI, they fail.
 
-use firmware::{Arithmetic, Record, Rig, Scenario, TICKS, frame_words};
 use host_sim::target::{self, Board, CORTEX_M0, CORTEX_M3, STM32F405, TargetError};
 use object::{Object, ObjectSymbol};
 use std::io::Read;
@@ -12,6 +11,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use system_tests::{build, skip};
 use vm_nostd::Fixed;
+use vm_nostd_cores::{Arithmetic, Record, Rig, Scenario, TICKS, frame_words};
 
 /// Timeout: the scenario takes 12 s in QEMU, longer on a busy host.
 const TIMEOUT: Duration = Duration::from_secs(240);

@@ -2,7 +2,6 @@
 //!
 //! CI runs this a second time in a profile that checks every addition for overflow.
 
-use firmware::MUSCLE;
 use host_sim::engine::{self, Arithmetic};
 use host_sim::reference::{Input as ReferenceInput, Mode};
 use host_sim::scenario::paper_muscle;
@@ -10,6 +9,7 @@ use host_sim::trace::InputTrace;
 use vm_nostd::{
     Fixed, Input, IntramuscularFes, Muscle, NaturalContinuous, Recruitment, Scalar, TimeStep,
 };
+use vm_nostd_cores::MUSCLE;
 
 /// Steady force of the reference, N, at a constant input.
 fn settled(mode: Mode, input: ReferenceInput) -> f64 {

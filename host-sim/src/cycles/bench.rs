@@ -43,7 +43,7 @@ pub fn measure(
     std::fs::write(&inputs, encode(runs))?;
     let path = target::build(
         core.board(),
-        "bench",
+        target::BENCH,
         &[("VM_BENCH_INPUTS", &inputs), ("VM_BENCH_CLASS", Path::new(class.name()))],
     )?;
     let image = Image::read(&path).map_err(FollowError::from)?;

@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn every_case_of_the_model_and_the_controller_has_a_budget() {
         let budgets = Budgets::read().expect("budgets");
-        for core in Core::ALL {
+        for core in Core::ALL.into_iter().filter(|core| !core.is_timed_as_m4f()) {
             let names: Vec<&str> = budgets.core[&core].keys().map(String::as_str).collect();
             let cases = cases_on(core);
             let mut expected: Vec<&str> =

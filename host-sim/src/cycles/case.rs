@@ -5,6 +5,7 @@ use crate::engine::{self, Arithmetic, Class, RunError};
 use crate::metrics::{ForceError, forces};
 use crate::reference::Mode;
 use crate::scenario::{self, Scenario, paper_muscle};
+use crate::tolerance;
 use literal_port::{Drive, LiteralMuscle, Real, STABLE_STEPS};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -185,14 +186,14 @@ impl Case {
         bytes as u32
     }
 
-    /// Largest force error over the scenarios, % of F0; `None` if the case computes no force.
-    pub fn largest_error(
+    /// Largest force errors over the scenarios; `None` if the case computes no force.
+    pub fn largest_errors(
         &self,
         scenarios: &[Scenario],
         class: Class,
-    ) -> Result<Option<f64>, RunError> {
+    ) -> Result<Option<LargestErrors>, RunError> {
         let Some(mode) = self.mode() else { return Ok(None) };
-        let errors: Vec<f64> = scenarios
+        let errors: Vec<(bool, f64)> = scenarios
             .par_iter()
             .map(|scenario| {
                 let run = |arithmetic| {
@@ -208,13 +209,27 @@ impl Case {
                     _ => run(self.arithmetic())?,
                 };
                 let expected = run(Arithmetic::Reference)?;
-                Ok(ForceError::between(&computed, &expected, scenario.muscle.f0()).max)
+                let error = ForceError::between(&computed, &expected, scenario.muscle.f0()).max;
+                Ok((tolerance::rings(&scenario.name), error))
             })
             .collect::<Result<_, RunError>>()?;
         // NaN counts as the largest error.
         let larger = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
-        Ok(Some(errors.into_iter().fold(0.0, larger)))
+        let smooth = errors.iter().filter(|(rings, _)| !rings).map(|(_, error)| *error);
+        Ok(Some(LargestErrors {
+            smooth: smooth.fold(0.0, larger),
+            any: errors.iter().map(|(_, error)| *error).fold(0.0, larger),
+        }))
     }
+}
+
+/// Largest force errors of a case, % of F0.
+#[derive(Clone, Copy, Debug)]
+pub struct LargestErrors {
+    /// In scenarios without a ringing tendon.
+    pub smooth: f64,
+    /// In all scenarios.
+    pub any: f64,
 }
 
 /// The scenarios of the measured accuracy: the paper's muscle at 1 kHz, as many as fit into the

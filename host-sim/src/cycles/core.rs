@@ -33,11 +33,18 @@ pub enum Core {
     #[serde(rename = "cortex-m0plus")]
     #[value(name = "cortex-m0plus")]
     CortexM0Plus,
+    /// Cortex-M33 with its single-precision floating-point unit. Its instructions are its own,
+    /// their cycles those of the M4F: Arm publishes none.
+    CortexM33,
+    /// Cortex-M7. Its instructions are its own, their cycles those of the M4F, which does not issue
+    /// two at once.
+    CortexM7,
 }
 
 impl Core {
     /// All cores.
-    pub const ALL: [Self; 3] = [Self::CortexM4F, Self::CortexM3, Self::CortexM0Plus];
+    pub const ALL: [Self; 5] =
+        [Self::CortexM4F, Self::CortexM3, Self::CortexM0Plus, Self::CortexM33, Self::CortexM7];
 
     /// Its name in tables and budgets and on the command line.
     pub fn name(self) -> &'static str {
@@ -45,14 +52,21 @@ impl Core {
             Self::CortexM4F => "cortex-m4f",
             Self::CortexM3 => "cortex-m3",
             Self::CortexM0Plus => "cortex-m0plus",
+            Self::CortexM33 => "cortex-m33",
+            Self::CortexM7 => "cortex-m7",
         }
+    }
+
+    /// Whether its timing is the M4F's, for want of its own. Such cores have no budgets.
+    pub fn is_timed_as_m4f(self) -> bool {
+        matches!(self, Self::CortexM33 | Self::CortexM7)
     }
 
     /// The accuracy class of its rows: the M0+ is fast enough for the economy class only.
     pub fn class(self) -> engine::Class {
         match self {
-            Self::CortexM4F | Self::CortexM3 => engine::Class::Standard,
             Self::CortexM0Plus => engine::Class::Economy,
+            _ => engine::Class::Standard,
         }
     }
 
@@ -62,9 +76,9 @@ impl Core {
         match self {
             Self::CortexM4F => target::STM32F405,
             Self::CortexM3 => target::CORTEX_M3,
-            Self::CortexM0Plus => {
-                Board { machine: target::CORTEX_M3.machine, triple: target::CORTEX_M0.triple }
-            }
+            Self::CortexM0Plus => Board { machine: target::CORTEX_M3.machine, ..target::CORTEX_M0 },
+            Self::CortexM33 => target::CORTEX_M33,
+            Self::CortexM7 => target::CORTEX_M7,
         }
     }
 
@@ -75,7 +89,7 @@ impl Core {
             | Class::FloatMove
             | Class::FloatMoveTwo
             | Class::FloatMultiplyAccumulate
-            | Class::FloatDivide => self == Self::CortexM4F,
+            | Class::FloatDivide => !matches!(self, Self::CortexM3 | Self::CortexM0Plus),
             Class::LongMultiply
             | Class::LongMultiplyAccumulate
             | Class::MultiplyAccumulate

@@ -112,12 +112,12 @@ impl Instruction {
 pub struct Decoder(Capstone);
 
 impl Decoder {
-    /// A decoder for a Cortex-M4F, whose instruction set includes those of an M3 and an M0+.
+    /// A decoder for an M33 and an M7, whose instruction sets include those of the other cores.
     pub fn new() -> Result<Self, capstone::Error> {
         let capstone = Capstone::new()
             .arm()
             .mode(ArchMode::Thumb)
-            .extra_mode([ArchExtraMode::MClass].into_iter())
+            .extra_mode([ArchExtraMode::MClass, ArchExtraMode::V8].into_iter())
             .detail(true)
             .build()?;
         Ok(Self(capstone))

@@ -3,7 +3,7 @@
 use super::bench::{BenchError, measure};
 use super::breakdown::{Part, by_class, by_file};
 use super::budgets::Budgets;
-use super::case::{self, CASES, Case, Subject};
+use super::case::{self, CASES, Case, LargestErrors, Subject};
 use super::core::Core;
 use super::follow::{Count, Followed};
 use super::image::{Image, ImageError};
@@ -41,10 +41,13 @@ pub fn state_bytes(case: &str) -> Result<Option<(u32, u32)>, toml::de::Error> {
     Ok(Case::named(case).map(Case::state_bytes).zip(most))
 }
 
-/// The cases measured on a core: all on the M4F, model and controller in fixed point on the others.
+/// The cases measured on a core: all on the M4F; the model on cores that are timed like it; model
+/// and controller in fixed point on the others.
 pub(super) fn cases_on(core: Core) -> Vec<Case> {
-    let wanted = |case: &&Case| {
-        core == Core::CortexM4F || case.has_budget() && case.arithmetic() == Arithmetic::Fixed
+    let wanted = |case: &&Case| match core {
+        Core::CortexM4F => true,
+        _ if core.is_timed_as_m4f() => case.is_model(),
+        _ => case.has_budget() && case.arithmetic() == Arithmetic::Fixed,
     };
     CASES.iter().filter(wanted).copied().collect()
 }
@@ -62,8 +65,8 @@ pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportEr
         let (image, followed) = measure(core, &cases, &runs, tracer, Count::All, class)?;
         let mut rows = Vec::new();
         for (case, followed) in cases.iter().zip(&followed) {
-            let error = case.largest_error(&scenarios, class)?;
-            rows.push(row(core, class, case, followed, error));
+            let errors = case.largest_errors(&scenarios, class)?;
+            rows.push(row(core, class, case, followed, errors));
         }
         for (index, case) in cases.iter().enumerate() {
             if case.has_budget() {
@@ -76,7 +79,7 @@ pub fn report(tracer: Tracer, class: Option<Class>) -> Result<Vec<Row>, ReportEr
                 rows[index].ratio = cycles_of_model(&rows, case.mode())
                     .map(|cycles| rows[index].cycles_pess_max as f64 / cycles as f64);
             }
-            if class == core.class() {
+            if class == core.class() && !core.is_timed_as_m4f() {
                 budgets.hold(case, &mut rows[index]);
             }
         }
@@ -123,7 +126,13 @@ fn cycles_of_model(rows: &[Row], mode: Option<Mode>) -> Option<u64> {
     Some(rows.get(index)?.cycles_pess_max)
 }
 
-fn row(core: Core, class: Class, case: &Case, followed: &Followed, max_pct_f0: Option<f64>) -> Row {
+fn row(
+    core: Core,
+    class: Class,
+    case: &Case,
+    followed: &Followed,
+    errors: Option<LargestErrors>,
+) -> Row {
     let calls = &followed.calls;
     let [optimistic, typical, pessimistic] = [0, 1, 2].map(|setting| Spread::of(calls, setting));
     let worst = (0..calls.len()).max_by_key(|&tick| calls[tick].cycles[2]).unwrap_or(0);
@@ -150,7 +159,8 @@ fn row(core: Core, class: Class, case: &Case, followed: &Followed, max_pct_f0: O
         code_bytes: followed.code_bytes(),
         both_modes_bytes: None,
         stack_bytes: followed.stack_bytes,
-        max_pct_f0,
+        smooth_pct_f0: errors.map(|errors| errors.smooth),
+        max_pct_f0: errors.map(|errors| errors.any),
         ratio: None,
         budget: None,
         pass: true,
@@ -175,7 +185,13 @@ pub(super) mod tests {
             code: [(0x100, 3000), (0x2000, 2000)].into(),
             executions: Vec::new(),
         };
-        let row = row(Core::CortexM4F, Class::Standard, case, &followed, Some(0.1));
+        let row = row(
+            Core::CortexM4F,
+            Class::Standard,
+            case,
+            &followed,
+            Some(LargestErrors { smooth: 0.1, any: 0.1 }),
+        );
         let share = |name: &str, cycles| Share { name: name.to_owned(), instructions: 1.0, cycles };
         Row {
             both_modes_bytes: Some(9000),

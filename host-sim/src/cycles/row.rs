@@ -113,6 +113,8 @@ pub struct Row {
     pub both_modes_bytes: Option<u32>,
     /// Stack high watermark below the caller's frame, bytes.
     pub stack_bytes: u32,
+    /// As `max_pct_f0`, without the scenarios in which the tendon rings.
+    pub smooth_pct_f0: Option<f64>,
     /// Largest error on the same inputs except the adversarial ones, % of F0; `None` if the case
     /// computes no force.
     pub max_pct_f0: Option<f64>,

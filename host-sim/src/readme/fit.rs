@@ -2,9 +2,6 @@
 
 use super::place::ReadmeError;
 use crate::cycles::Core;
-use crate::engine::Class;
-use crate::tolerance;
-use crate::verify::{Report, Row};
 use vm_nostd::{
     ContinuousMuscle, FesMuscle, Fixed, IntramuscularFes, NaturalContinuous, Scalar, State,
 };
@@ -14,7 +11,7 @@ struct Fit {
     core: Core,
     /// Name of the core.
     name: &'static str,
-    /// Clock of a common part (STM32F405, STM32F103, STM32C0), MHz.
+    /// Clock of a common part (STM32F405, STM32F103, STM32C0, STM32U5, STM32H7), MHz.
     clock_mhz: f64,
     arithmetic: &'static str,
     /// Cases of the table of cycles, one per mode.
@@ -23,8 +20,8 @@ struct Fit {
     muscle_bytes: usize,
 }
 
-/// The table, from the report of accuracy and the table of cycles.
-pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError> {
+/// The table, from that of cycles.
+pub(super) fn table(cycles: &str) -> Result<String, ReadmeError> {
     let fixed = |core, name, clock_mhz| Fit {
         core,
         name,
@@ -33,19 +30,22 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
         cases: ["continuous-fixed", "fes-fixed"],
         muscle_bytes: muscle_bytes::<Fixed>(),
     };
+    let float = |core, name, clock_mhz| Fit {
+        arithmetic: "f32",
+        cases: ["continuous-f32", "fes-f32"],
+        muscle_bytes: muscle_bytes::<f32>(),
+        ..fixed(core, name, clock_mhz)
+    };
     let rows = [
-        Fit {
-            arithmetic: "f32",
-            cases: ["continuous-f32", "fes-f32"],
-            muscle_bytes: muscle_bytes::<f32>(),
-            ..fixed(Core::CortexM4F, "Cortex-M4F", 168.0)
-        },
+        float(Core::CortexM4F, "Cortex-M4F", 168.0),
         fixed(Core::CortexM4F, "Cortex-M4F", 168.0),
         fixed(Core::CortexM3, "Cortex-M3", 72.0),
-        fixed(Core::CortexM0Plus, "Cortex-M0+, economy class", 48.0),
+        fixed(Core::CortexM0Plus, "Cortex-M0+, economy", 48.0),
+        float(Core::CortexM33, "Cortex-M33, timed as M4F", 160.0),
+        float(Core::CortexM7, "Cortex-M7, timed as M4F", 480.0),
     ];
     let mut text = String::from(
-        "| core, arithmetic | cycles per tick | CPU | flash | RAM per muscle | stack | max. error |\n\
+        "| core, arithmetic | cycles | CPU, % at MHz | flash, KiB | RAM, B | stack, B | error, % |\n\
          |---|---:|---:|---:|---:|---:|---:|\n",
     );
     for fit in rows {
@@ -55,17 +55,9 @@ pub(super) fn table(report: &Report, cycles: &str) -> Result<String, ReadmeError
             Ok::<_, ReadmeError>(first?.max(second?))
         };
         let cycles = worst("pess max")?;
-        let [smooth, ringing] = [false, true].map(|ringing| {
-            let errors = errors(report, fit.arithmetic, ringing);
-            errors.fold(0.0, f64::max)
-        });
-        let error = if fit.core.class() == Class::Standard {
-            format!("{smooth:.2} % ({ringing:.1} %)")
-        } else {
-            format!("({:.1} %)", worst("max % F0")?)
-        };
+        let (smooth, ringing) = (worst("smooth % F0")?, worst("max % F0")?);
         text.push_str(&format!(
-            "| {}, `{}` | {} | {:.0} % of {} MHz | {:.1} KiB | {} B | {} B | {error} |\n",
+            "| {}, `{}` | {} | {:.0} at {} | {:.1} | {} | {} | {smooth:.2} ({ringing:.1}) |\n",
             fit.name,
             fit.arithmetic,
             cycles,
@@ -86,19 +78,6 @@ fn muscle_bytes<S: Scalar>() -> usize {
         size_of::<ContinuousMuscle<S, 2>>() + size_of::<State<S, NaturalContinuous, 2>>();
     let fes = size_of::<FesMuscle<S, 2>>() + size_of::<State<S, IntramuscularFes, 2>>();
     continuous.max(fes)
-}
-
-/// Largest errors of an arithmetic at 1 ms, % of F0, in scenarios with or without a ringing tendon.
-fn errors<'a>(
-    report: &'a Report,
-    arithmetic: &'a str,
-    ringing: bool,
-) -> impl Iterator<Item = f64> + 'a {
-    let selected = move |row: &&Row| {
-        let rings = tolerance::rings(&row.scenario);
-        row.arithmetic == arithmetic && row.is_at_1_ms() && rings == ringing
-    };
-    report.rows.iter().filter(selected).map(|row| row.max_pct_f0)
 }
 
 /// Reads a number from the table of cycles.

@@ -103,21 +103,23 @@ fn at_1_ms<'a>(report: &'a Report, arithmetic: &'a str) -> impl Iterator<Item = 
 /// Cost of a tick of the model and the baselines, by file, and by class of instruction.
 pub fn cycles(rows: &[cycles::Row]) -> String {
     let mut text = String::from(
-        "| core | case | class | typ mean | typ max | pess max | max/mean | x model | max % F0 | state B | code B | both modes B | stack B |\n\
-         |---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| core | case | class | instr max | typ mean | typ max | pess max | max/mean | x model | smooth % F0 | max % F0 | state B | code B | both modes B | stack B |\n\
+         |---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let optional = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     for row in rows.iter().filter(|row| cycles::is_listed(&row.case)) {
         text.push_str(&format!(
-            "| {} | {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} | {} | {} | {} | {:.0} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} | {} |\n",
             row.target.name(),
             row.case,
             row.class.name(),
+            row.instructions_max,
             row.cycles_typ_mean,
             row.cycles_typ_max,
             row.cycles_pess_max,
             row.maximum_over_mean(),
             optional(row.ratio.map(|ratio| format!("{ratio:.1}"))),
+            optional(row.smooth_pct_f0.map(|error| format!("{error:.3}"))),
             optional(row.max_pct_f0.map(|error| format!("{error:.3}"))),
             row.state_bytes,
             row.code_bytes,

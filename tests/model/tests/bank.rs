@@ -1,10 +1,10 @@
 //! A bank computes the same bits as its muscles do separately.
 
-use firmware::{Arithmetic, Inputs, MUSCLE, Scenario};
 use vm_nostd::{
     Bank, BankFull, BankedMuscle, ContinuousMuscle, FesMuscle, Fixed, Muscle, Recruitment, State,
     TimeStep,
 };
+use vm_nostd_cores::{Arithmetic, Inputs, MUSCLE, Scenario};
 
 const CAPACITY: usize = 4;
 

@@ -5,7 +5,6 @@
 //! `VM_WRITE=1 cargo test --release -p model-tests --test bits` writes the bits; without `VM_WRITE`
 //! they are compared.
 
-use firmware::{Inputs, MUSCLE, Scenario};
 use model_tests::muscles::{Discrete, Mode, built};
 use std::fmt::Write;
 use std::path::Path;
@@ -13,6 +12,7 @@ use vm_nostd::{
     Class, EffectiveLength, FascicleLength, FiberParams, Fixed, Input, IntramuscularFes,
     MuscleParams, NaturalContinuous, Scalar, TimeStep, feline_vm4, human_vm4,
 };
+use vm_nostd_cores::{Inputs, MUSCLE, Scenario};
 
 /// Ticks of each run: several steps of activation and frequency, and invalid inputs.
 const TICKS: u32 = 3_000;

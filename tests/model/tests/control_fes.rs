@@ -484,7 +484,7 @@ fn checksums_cover_controller_and_state() {
 
 /// The muscle of the model, held at the activation that the inverse names, has the wanted force.
 fn natural<S: Scalar>(within: f64) {
-    for muscle in [firmware::MUSCLE, KNEE.muscles[1].params(), ANKLE.muscles[0].params()] {
+    for muscle in [vm_nostd_cores::MUSCLE, KNEE.muscles[1].params(), ANKLE.muscles[0].params()] {
         let inverse = SteadyNatural::<S, 2>::build(&muscle).expect("an inverse");
         let model = ContinuousMuscle::<f64, 2>::build(&muscle, STEP).expect("a muscle");
         let optimum = muscle.fascicle_length + muscle.tendon_length;
@@ -563,7 +563,7 @@ fn intervals_become_frequencies_by_the_rule() {
 /// intervals is that of its frequency once it has two pulses.
 #[test]
 fn a_doublet_makes_the_force_rise_faster() {
-    let muscle = FesMuscle::<f64, 2>::build(&firmware::MUSCLE, STEP).expect("a muscle");
+    let muscle = FesMuscle::<f64, 2>::build(&vm_nostd_cores::MUSCLE, STEP).expect("a muscle");
     let force = |frequencies: &[f64]| -> Vec<f64> {
         let mut state = muscle.rest(0.16).expect("rest");
         frequencies

@@ -251,7 +251,8 @@ fn what_is_no_joint_is_refused_by_name() {
 /// stiffness says.
 fn stiffness_of<S: Scalar>(within: f64) {
     for (activation, path) in [(0.0, 0.184), (0.3, 0.15), (0.8, 0.15), (0.8, 0.165)] {
-        let muscle = ContinuousMuscle::<S, 2>::build(&firmware::MUSCLE, TimeStep::MILLISECOND);
+        let muscle =
+            ContinuousMuscle::<S, 2>::build(&vm_nostd_cores::MUSCLE, TimeStep::MILLISECOND);
         let muscle = muscle.expect("a muscle");
         let held = |path: f64| {
             let input = Input {

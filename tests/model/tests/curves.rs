@@ -1,7 +1,7 @@
 //! The public curves of a built muscle against the paper's equations in `f64`.
 
-use firmware::MUSCLE;
 use vm_nostd::{ContinuousMuscle, FiberType, Fixed, Scalar, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 /// Error bounds in `f32`, fixed point and `f64`, from the README's table of kernel errors. The
 /// tendon's length is path minus fascicle length: one ULP of a length of 0.9 L_ce0, 6e-8, is

@@ -2,7 +2,6 @@
 //!
 //! CI runs these tests again in a profile with overflow checks.
 
-use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode as AnyMode, built, config, muscles, steps};
 use proptest::prelude::*;
 use vm_nostd::{
@@ -12,6 +11,7 @@ use vm_nostd::{
     RestoreError, SagParams, Scalar, State, TendonParams, TimeStep, YieldParams, human_vm4,
     paper_table_1,
 };
+use vm_nostd_cores::MUSCLE;
 
 /// Muscles that fixed point accepts.
 fn fixed_muscles() -> impl Strategy<Value = MuscleParams<2>> {

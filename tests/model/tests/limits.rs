@@ -1,10 +1,10 @@
 //! Every value beyond its limit is refused by name, and every flag is raised by its cause.
 
-use firmware::MUSCLE;
 use vm_nostd::{
     ContinuousMuscle, DiscreteMuscle, FesMuscle, Fixed, Input, Limit, MotorUnits, MuscleParams,
     RestoreError, Scalar, Status, TimeStep, UnitSizes,
 };
+use vm_nostd_cores::MUSCLE;
 
 type Params = MuscleParams<2>;
 

@@ -1,9 +1,9 @@
 //! Limits and thresholds: values just inside are accepted, values just outside are refused.
 
-use firmware::MUSCLE;
 use vm_nostd::{
     ContinuousMuscle, DiscreteMuscle, Input, Limit, MotorUnits, MuscleParams, TimeStep, UnitSizes,
 };
+use vm_nostd_cores::MUSCLE;
 
 type Params = MuscleParams<2>;
 

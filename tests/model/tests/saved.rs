@@ -1,12 +1,12 @@
 //! A saved state has a fingerprint: another muscle, mode, time step or arithmetic refuses it.
 
-use firmware::MUSCLE;
 use model_tests::muscles::{Discrete, Mode};
 use vm_nostd::{
     EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits, Muscle,
     MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, RestoreError, Scalar, State,
     TimeStep, UnitSizes,
 };
+use vm_nostd_cores::MUSCLE;
 
 type Params = MuscleParams<2>;
 /// Change of a parameter.

@@ -1,10 +1,10 @@
 //! The inverse model of FES: it reproduces steady forces, and returns the nearest for an
 //! unreachable one.
 
-use firmware::MUSCLE;
 use model_tests::muscles::{TYPES, config, muscles};
 use proptest::prelude::*;
 use vm_nostd::{FesMuscle, Fixed, MuscleParams, Scalar, Status, Steady, SteadyFes, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 const PATHS: [f64; 4] = [0.13, 0.145, 0.16, 0.175];
 

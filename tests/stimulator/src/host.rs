@@ -2,10 +2,11 @@
 
 use crate::client::Client;
 use crate::device::{InProcess, Memory};
+use firmware::Stimulus;
 use firmware::link::{Answer, Electrode, Mode, Readings, Report, Request, Upload};
 use firmware::safety::{CHANNELS, Fault, State};
-use firmware::{MUSCLE, Stimulus};
 use vm_nostd::RecruitmentCurveParams;
+use vm_nostd_cores::MUSCLE;
 
 /// A host and its device.
 pub type Host = Client<InProcess<Memory>>;

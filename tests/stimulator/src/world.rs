@@ -13,11 +13,12 @@ use firmware::link::{
 };
 use firmware::safety::{Fault, State};
 use firmware::{
-    Controller, Deadline, Device, Limits, LinkQueues, MUSCLE, Permission, PlanQueue, Pulses,
-    Server, Stimulus,
+    Controller, Deadline, Device, Limits, LinkQueues, Permission, PlanQueue, Pulses, Server,
+    Stimulus,
 };
 use std::collections::{HashMap, VecDeque};
 use vm_nostd::TimeStep;
+use vm_nostd_cores::MUSCLE;
 
 const TICK: u64 = 1000;
 

@@ -6,9 +6,10 @@ use embedded_storage::nor_flash::{
     ErrorType, MultiwriteNorFlash, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use firmware::link::{Mode, Request, Upload, VERSION};
-use firmware::{MOST_STORED, MUSCLE, NotStored, RamFlash, Slots};
+use firmware::{MOST_STORED, NotStored, RamFlash, Slots};
 use stimulator_tests::client::Client;
 use stimulator_tests::device::InProcess;
+use vm_nostd_cores::MUSCLE;
 
 const BYTES: usize = 8192;
 

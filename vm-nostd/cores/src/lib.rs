@@ -1,10 +1,8 @@
-//! The firmware's rig and scenario by their files: its queues do not build on RV32IMC, which has no
-//! atomics.
+//! What runs on emulated cores: two muscles and a scenario whose bits are compared with the host's,
+//! and the programs of `vm cycles` and of the tests. Any core with the Rust target will do.
 #![no_std]
 
-#[path = "../../../firmware/src/rig.rs"]
 mod rig;
-#[path = "../../../firmware/src/scenario.rs"]
 mod scenario;
 
 pub use rig::{Arithmetic, Inputs, MUSCLE, Record, Rig, frame_words};

@@ -16,10 +16,10 @@ use crate::hard_tick::deadline::Deadline;
 use crate::hard_tick::placed_muscle::{Demand, PlacedMuscle};
 use crate::hard_tick::safety::State;
 use crate::link::{Electrode, Mode, Readings, RowInputs, Upload};
-use crate::rig::MUSCLE;
 use heapless::spsc::Consumer;
 use std::boxed::Box;
 use vm_nostd::{RecruitmentCurveParams, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
 

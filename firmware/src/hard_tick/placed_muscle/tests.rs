@@ -4,8 +4,8 @@ use super::{Demand, PlacedMuscle};
 use crate::between::guarded::Guarded;
 use crate::between::stimulus::Stimulus;
 use crate::link::{Electrode, Mode, RowInputs, RowOutputs, Upload};
-use crate::rig::MUSCLE;
 use vm_nostd::{RecruitmentCurve, RecruitmentCurveParams, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 const CURVE: RecruitmentCurveParams =
     RecruitmentCurveParams { threshold: 4e-3, saturation: 12e-3, chronaxie: 200e-6, slope: 2.0 };

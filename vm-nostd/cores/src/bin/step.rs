@@ -4,13 +4,12 @@
 #![no_main]
 
 use core::hint::black_box;
-use cortex_m_rt::entry;
-use firmware::{Arithmetic, Inputs, MUSCLE, Record, Rig, Scenario, end};
 use vm_nostd::{
     ContinuousMuscle, EffectiveLength, FesMuscle, Fixed, Input, IntramuscularFes, MotorUnits,
     Muscle, NaturalContinuous, NaturalDiscrete, Output, Recruitment, Scalar, State, TimeStep,
     UnitSizes,
 };
+use vm_nostd_cores::{Arithmetic, Inputs, MUSCLE, Record, Rig, Scenario};
 
 /// Inputs and results that the optimiser can tell nothing about.
 struct Anything;
@@ -96,13 +95,21 @@ fn run() -> Option<()> {
     }
 }
 
-#[entry]
+#[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+#[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
 fn main() -> ! {
     run();
-    end::sleep()
+    wait()
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    end::sleep()
+    wait()
+}
+
+/// Does nothing for good.
+fn wait() -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
 }

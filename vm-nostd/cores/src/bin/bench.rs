@@ -8,9 +8,8 @@
 #![no_main]
 
 use core::hint::black_box;
-use cortex_m_rt::entry;
-use firmware::{MUSCLE, end};
 use literal_port::{Drive, LiteralMuscle, STABLE_STEPS, kernels_of_one_evaluation};
+use semihosting::process::ExitCode;
 use vm_nostd::control::{
     ELBOW, FesCommand, FesController, FesControllerParams, FesControllerState, GainParams,
     JointError, LimbParams, Measured, Modulation, PiParams, Sensors, Target,
@@ -20,6 +19,7 @@ use vm_nostd::{
     IntramuscularFes, MotorUnits, Muscle, MuscleParams, NaturalContinuous, NaturalDiscrete, Output,
     ParameterError, Recruitment, RecruitmentCurveParams, Scalar, State, TimeStep, UnitSizes,
 };
+use vm_nostd_cores::MUSCLE;
 
 static INPUTS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/bench_inputs.bin"));
 
@@ -271,13 +271,15 @@ fn controller<S: Scalar>(case: u32, step: Control<S>) -> Result<(), JointError> 
     driven.map_err(|error| JointError { muscle: None, error })
 }
 
-#[entry]
+#[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+#[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
 fn main() -> ! {
-    let done = drive_all();
-    end::finish(done.is_ok())
+    let done = drive_all().is_ok();
+    let code = if done { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    code.exit_process()
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    end::finish(false)
+    ExitCode::FAILURE.exit_process()
 }

@@ -1,20 +1,20 @@
-//! The rig run through the scenario as fast as the core can, on any Cortex-M that has semihosting
-//! and 16 KiB of RAM: first in fixed point, then in `f32`. The bits of every tick go to standard
-//! output as little-endian words.
+//! The rig run through the scenario as fast as the core can, first in fixed point, then in `f32`;
+//! the bits of every tick go to the emulator's standard output as little-endian words. 16 KiB of
+//! RAM are enough.
 #![no_std]
 #![no_main]
 
-use cortex_m_rt::entry;
-use cortex_m_semihosting::hio::{self, HostStream};
-use firmware::{Arithmetic, Record, Rig, Scenario, TICKS, end};
+use semihosting::io::{Stdout, Write, stdout};
+use semihosting::process::ExitCode;
 use vm_nostd::Fixed;
+use vm_nostd_cores::{Arithmetic, Record, Rig, Scenario, TICKS};
 
 /// Words that go to the host at once.
 const CHUNK: usize = 64;
 
 /// Sends words to the host.
 struct Outlet {
-    host: HostStream,
+    host: Stdout,
     failed: bool,
 }
 
@@ -41,16 +41,18 @@ fn run<S: Arithmetic>(outlet: &mut Outlet) -> bool {
     !outlet.failed
 }
 
-#[entry]
+#[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+#[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
 fn main() -> ! {
-    let done = hio::hstdout().is_ok_and(|host| {
+    let done = stdout().is_ok_and(|host| {
         let mut outlet = Outlet { host, failed: false };
         run::<Fixed>(&mut outlet) && run::<f32>(&mut outlet)
     });
-    end::finish(done)
+    let code = if done { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    code.exit_process()
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    end::finish(false)
+    ExitCode::FAILURE.exit_process()
 }
