@@ -172,8 +172,8 @@ pub struct FromHost {
 }
 
 impl FromHost {
-    /// Next received byte, if any. Called by the interrupt of a byte and, if [`ToHost::is_emulated`],
-    /// before idle waits.
+    /// Next received byte, if any. Called by the interrupt of a byte and, if
+    /// [`ToHost::is_emulated`], before idle waits.
     pub fn read(&mut self) -> Option<Received> {
         let received = match self.line.read() {
             Ok(byte) => Some(Received::Byte(byte)),
