@@ -25,6 +25,6 @@ pub fn tables(report: &Report) -> Result<[(Place, String); 4], ReadmeError> {
         (WORST, worst(report)),
         (MEASURED, measured(report)),
         (ERROR_BUDGET, error_budget(report)),
-        (FIT, fit::table(&CYCLES.text()?)?),
+        (FIT, fit::table(report, &CYCLES.text()?)?),
     ])
 }

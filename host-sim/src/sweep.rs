@@ -4,10 +4,12 @@
 mod case;
 mod keys;
 mod space;
+mod summary;
 
 pub use case::{Case, Measured};
 pub use keys::{KEYS, Key};
 pub use space::{Space, SpaceError, Variation};
+pub use summary::{Promise, Summary};
 
 use crate::engine::{self, Arithmetic, Class};
 use crate::golden;
@@ -63,6 +65,11 @@ impl Sweep {
         row
     }
 
+    /// Index of the first measured column.
+    fn first_measured() -> usize {
+        2 + KEYS.len()
+    }
+
     /// Computes the missing rows and sorts the table; see [`Ledger::complete`].
     pub fn run(&self, output: &Path) -> Result<Ledger, LedgerError> {
         let begin = |number| Self::begin(number, &self.space.case(number));
@@ -100,7 +107,7 @@ impl Sweep {
     /// The cases with the largest errors, worst first: for every arithmetic up to `most` without
     /// flags and up to `most` with flags.
     pub fn worst(&self, ledger: &Ledger, most: usize) -> Vec<Worst> {
-        let first = 2 + KEYS.len();
+        let first = Self::first_measured();
         let mut listed = Vec::new();
         for (index, &arithmetic) in self.arithmetics.iter().enumerate() {
             let at = first + index * MEASURED.len();

@@ -2,8 +2,9 @@
 
 use super::{CSV, ModeName, check_ending, print};
 use crate::engine::{Arithmetic, Class, mode_name, status_names};
+use crate::ledger::Ledger;
 use crate::markdown_table::markdown_table;
-use crate::sweep::{KEYS, Space, Sweep, Variation};
+use crate::sweep::{KEYS, Promise, Space, Sweep, Variation};
 use crate::trace::write_atomically;
 use clap::{Args, ValueEnum};
 use std::error::Error;
@@ -127,10 +128,34 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
         ]);
     }
     print(&table)?;
+    print(&summary(&sweep, &ledger, args.random.is_some() && args.vary.is_empty()))?;
     let refused = ledger.rows().filter(|(_, row)| row.last().is_some_and(|p| !p.is_empty()));
     let (count, refused) = (sweep.space.count(), refused.count());
     print(&format!("{count} cases in {}, {refused} with a refusal", output.display()))?;
     Ok(())
+}
+
+/// The table of what unflagged cases exceed. Classes promise it of random muscles in the default
+/// ranges only.
+fn summary(sweep: &Sweep, ledger: &Ledger, is_promised: bool) -> String {
+    let promise = Promise::of(sweep.class);
+    let beyond = format!("beyond {} % F0, %", promise.common_pct_f0);
+    let header = ["class", "arithmetic", "cases", "flagged, %", &beyond, "worst, % F0", "promised"];
+    let mut table = markdown_table(&header, []);
+    for summary in sweep.summaries(ledger) {
+        let kept = if summary.keeps(promise) { "kept" } else { "BROKEN" };
+        let (share, worst) = (promise.beyond_pct, promise.worst_pct_f0);
+        table.add_row([
+            sweep.class.name().to_owned(),
+            summary.arithmetic.name().to_owned(),
+            summary.cases.to_string(),
+            format!("{:.2}", summary.flagged_pct),
+            format!("{:.2}", summary.beyond_pct),
+            format!("{:.3}", summary.worst_pct_f0),
+            if is_promised { format!("{share} %, {worst}: {kept}") } else { "-".to_owned() },
+        ]);
+    }
+    format!("{table}\nUnflagged cases; a promise is that of random sweeps without --vary.")
 }
 
 /// Writes a case to files, and prints its errors.
