@@ -1,7 +1,7 @@
 //! All measurements in one HTML file that needs no network.
 
 use crate::chart::{Chart, Line, Panel, Point};
-use crate::closed_loop::{self, Study, StudyError, Task};
+use crate::closed_loop::{self, Kind, Study, StudyError, Task};
 use crate::cycles;
 use crate::engine::{Arithmetic, Class, RunError};
 use crate::figures::{Claim, Figures, FiguresError};
@@ -132,7 +132,8 @@ pub fn page(cycles: Option<&Path>) -> Result<String, ReportError> {
 /// One patient's reach under every controller, as they are before tuning, which takes minutes.
 fn untuned_loop() -> Result<String, StudyError> {
     let task = Task::ElbowReach;
-    let study = Study { tasks: vec![task], patients: 1, tuning_patients: 1, evaluations: 1 };
+    let (tasks, controllers) = (vec![task], Kind::ALL.to_vec());
+    let study = Study { tasks, controllers, patients: 1, tuning_patients: 1, evaluations: 1 };
     Ok(closed_loop::picture(task, &closed_loop::run(&study)?)?)
 }
 

@@ -24,7 +24,7 @@ const GAIN_TIME: f64 = 5.0;
 const NO_COCONTRACTION: f64 = 0.03;
 
 /// Which controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Kind {
     /// PI from the angle to the width of the pulses of one muscle or the other.
     Pi,

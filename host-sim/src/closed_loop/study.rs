@@ -15,6 +15,8 @@ use vm_nostd::control::JointError;
 pub struct Study {
     /// Tasks.
     pub tasks: Vec<Task>,
+    /// Controllers.
+    pub controllers: Vec<Kind>,
     /// Patients that are scored.
     pub patients: u64,
     /// Patients that controllers are tuned on: others.
@@ -130,17 +132,19 @@ pub fn run(study: &Study) -> Result<Vec<Row>, StudyError> {
         };
         let scored = drawn(Patient::scored, study.patients);
         let tuning = drawn(Patient::tuned_on, study.tuning_patients);
-        let mut of_model = None;
-        for kind in Kind::ALL {
-            let settings = match (kind, &of_model) {
-                (Kind::ModelFixed, Some(settings)) => Settings::clone(settings),
+        let mut of_model: Option<Settings> = None;
+        for kind in Kind::ALL.into_iter().filter(|kind| study.controllers.contains(kind)) {
+            let settings = match (kind, of_model.take()) {
+                (Kind::ModelFixed, Some(settings)) => settings,
+                (Kind::ModelFixed, None) => {
+                    tuner::tune(Kind::Model, task, &tuning, study.evaluations)?.settings
+                }
                 _ => tuner::tune(kind, task, &tuning, study.evaluations)?.settings,
             };
             if kind == Kind::Model {
                 of_model = Some(settings.clone());
             }
-            let row = score(task, kind, &scored, settings)?;
-            rows.push(row);
+            rows.push(score(task, kind, &scored, settings)?);
         }
     }
     Ok(rows)
@@ -182,7 +186,9 @@ mod tests {
     use super::*;
 
     fn small(patients: u64) -> Study {
-        Study { tasks: vec![Task::ElbowReach], patients, tuning_patients: 1, evaluations: 1 }
+        let controllers = Kind::ALL.to_vec();
+        let tasks = vec![Task::ElbowReach];
+        Study { tasks, controllers, patients, tuning_patients: 1, evaluations: 1 }
     }
 
     #[test]
@@ -197,6 +203,19 @@ mod tests {
         // Fixed point differs from `f32` by rounding: far less than patients do from each other.
         let [single, fixed] = &rows[3..] else { panic!("two of the model") };
         assert!((single.rms_median - fixed.rms_median).abs() < 0.5, "{single:?} {fixed:?}");
+        let charges = [single, fixed].map(|row| row.charge_median_uc);
+        assert!((charges[0] / charges[1] - 1.0).abs() < 0.02, "{charges:?}");
+    }
+
+    #[test]
+    fn a_controller_alone_has_the_row_that_it_has_among_all() {
+        let all = run(&small(2)).expect("a comparison");
+        for (kind, expected) in [(Kind::PiCurve, &all[1]), (Kind::ModelFixed, &all[4])] {
+            let alone = run(&Study { controllers: vec![kind], ..small(2) }).expect("a comparison");
+            assert_eq!(alone.len(), 1);
+            assert_eq!(alone[0].settings, expected.settings);
+            assert_eq!(alone[0].rms_p95.to_bits(), expected.rms_p95.to_bits());
+        }
     }
 
     #[test]

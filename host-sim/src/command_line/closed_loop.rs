@@ -1,7 +1,7 @@
 //! `vm loop`: controllers of stimulation in closed loop, on patients that differ from the model.
 
 use super::print;
-use crate::closed_loop::{self, Row, Study, Task};
+use crate::closed_loop::{self, Kind, Row, Study, Task};
 use crate::markdown_table::markdown_table;
 use crate::readme;
 use crate::trace::write_atomically;
@@ -24,11 +24,14 @@ pub struct LoopArgs {
     /// Tasks; all of them if none is given.
     #[arg(long = "task", value_enum)]
     tasks: Vec<Task>,
+    /// Controllers; all of them if none is given.
+    #[arg(long = "controller", value_enum)]
+    controllers: Vec<Kind>,
     /// Prints the table as JSON.
     #[arg(long)]
     json: bool,
-    /// Write the rows of these tasks into host-sim/docs/loop.md of the checkout that this program
-    /// was built in; those of other tasks stay.
+    /// Write the rows of these tasks and controllers into host-sim/docs/loop.md of the checkout that
+    /// this program was built in; the others stay.
     #[arg(long)]
     write: bool,
     /// Draws the first patient's run of the first task under every controller, in SVG.
@@ -42,8 +45,11 @@ pub fn run(args: &LoopArgs) -> Result<(), Box<dyn Error>> {
         crate::trace::check_folder(path)?;
     }
     let tasks = if args.tasks.is_empty() { Task::ALL.to_vec() } else { args.tasks.clone() };
+    let controllers =
+        if args.controllers.is_empty() { Kind::ALL.to_vec() } else { args.controllers.clone() };
     let study = Study {
         tasks,
+        controllers,
         patients: args.patients,
         tuning_patients: args.tuning_patients,
         evaluations: args.evaluations,

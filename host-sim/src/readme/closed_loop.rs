@@ -1,8 +1,9 @@
-//! The table of controllers in closed loop, task by task: one takes up to half an hour.
+//! The table of controllers in closed loop, row by row: a task takes up to half an hour.
 
-use crate::closed_loop::{COLUMNS, Row, Study, Task};
+use crate::closed_loop::{COLUMNS, Kind, Row, Study, Task};
 
-/// The table in `before` with the rows of the study's tasks replaced; the others stay.
+/// The table in `before` with the rows of the study's tasks and controllers replaced; the others
+/// stay.
 pub fn closed_loop(before: &str, study: &Study, rows: &[Row]) -> String {
     let tuning = format!("{} x {}", study.tuning_patients, study.evaluations);
     let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
@@ -12,15 +13,21 @@ pub fn closed_loop(before: &str, study: &Study, rows: &[Row]) -> String {
         format!("|---|---|---|{}", "---:|".repeat(COLUMNS.len() - 2)),
     ];
     for task in Task::ALL {
-        if study.tasks.contains(&task) {
-            let of_task = rows.iter().filter(|row| row.task == task.name());
-            text.extend(
-                of_task
-                    .map(|row| line(&[&row.cells()[..], std::slice::from_ref(&tuning)].concat())),
-            );
-        } else {
-            let begin = format!("| {} |", task.name());
-            text.extend(before.lines().filter(|line| line.starts_with(&begin)).map(str::to_owned));
+        for kind in Kind::ALL {
+            let name = [task.name(), kind.name(), kind.arithmetic()];
+            if study.tasks.contains(&task) && study.controllers.contains(&kind) {
+                let is_wanted = |row: &&Row| [row.task, row.controller, row.arithmetic] == name;
+                let new = rows.iter().filter(is_wanted);
+                text.extend(
+                    new.map(|row| {
+                        line(&[&row.cells()[..], std::slice::from_ref(&tuning)].concat())
+                    }),
+                );
+            } else {
+                let begin = format!("| {} |", name.join(" | "));
+                let kept = before.lines().filter(|line| line.starts_with(&begin));
+                text.extend(kept.map(str::to_owned));
+            }
         }
     }
     text.join("\n") + "\n"
@@ -31,7 +38,8 @@ mod tests {
     use super::*;
 
     fn study(task: Task) -> Study {
-        Study { tasks: vec![task], patients: 2, tuning_patients: 1, evaluations: 3 }
+        let (tasks, controllers) = (vec![task], vec![Kind::Pi]);
+        Study { tasks, controllers, patients: 2, tuning_patients: 1, evaluations: 3 }
     }
 
     fn row(task: Task, rms_p95: f64) -> Row {

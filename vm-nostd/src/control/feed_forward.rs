@@ -10,6 +10,10 @@ use crate::checksum::{Checksum, Summed, summed};
 use crate::scalar::Scalar;
 use crate::status::Status;
 
+/// Least activation that is worth a pulse. What is left in the lead of a muscle that is no longer
+/// wanted decays for seconds, and would give pulses at the threshold of its electrode all the while.
+pub(super) const LEAST_ACTIVATION: f64 = 1e-3;
+
 /// What one muscle needs for the inverse.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inverse<S: Scalar, const N: usize> {
@@ -18,17 +22,20 @@ pub(super) struct Inverse<S: Scalar, const N: usize> {
     pub(super) fatigue: Option<Fatigue<S>>,
     /// Fitness that is made up for at most.
     pub(super) least_fitness: S,
+    /// [`LEAST_ACTIVATION`].
+    pub(super) least_activation: S,
 }
 
 impl<S: Scalar, const N: usize> Summed for Inverse<S, N> {
     fn sum(&self, checksum: &mut Checksum) {
-        let Self { steady, lead, fatigue, least_fitness } = self;
+        let Self { steady, lead, fatigue, least_fitness, least_activation } = self;
         steady.sum(checksum);
         lead.sum(checksum);
         if let Some(fatigue) = fatigue {
             fatigue.sum(checksum);
         }
         least_fitness.sum(checksum);
+        least_activation.sum(checksum);
     }
 }
 
@@ -74,7 +81,7 @@ impl<S: Scalar> CoContraction<S> {
 /// Stimulation of one muscle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stimulated<S> {
-    /// 0..1.
+    /// 0, or [`LEAST_ACTIVATION`] to 1.
     pub(super) activation: S,
     pub(super) status: Status,
     /// No activation holds the torque: it is the greatest.
@@ -103,15 +110,11 @@ impl<S: Scalar, const N: usize> Inverse<S, N> {
         let force = force + (forward.ratio(strength) - forward);
         let (wanted, status) = self.steady.nearest_activation(force, path, frequency);
         let ahead = self.lead.step(&mut state.lead, wanted);
-        let activation = ahead.max(S::ZERO).min(S::ONE);
+        let within = ahead.max(S::ZERO).min(S::ONE);
+        let activation = if within < self.least_activation { S::ZERO } else { within };
         if let (Some(fatigue), Some(tired)) = (&self.fatigue, &mut state.fatigue) {
             fatigue.advance(tired, activation, frequency);
         }
-        Stimulated {
-            activation,
-            status,
-            at_most: wanted >= S::ONE,
-            lead_clipped: activation != ahead,
-        }
+        Stimulated { activation, status, at_most: wanted >= S::ONE, lead_clipped: within != ahead }
     }
 }

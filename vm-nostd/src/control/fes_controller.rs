@@ -3,7 +3,7 @@
 //! Each tick: target -> torque of the motion ([`LimbParams`]) plus PI -> the model's inverse ->
 //! activation of flexor and extensor -> pulse. Nothing in it can fail, and no loop depends on data.
 
-use super::feed_forward::{CoContraction, Inverse, InverseState};
+use super::feed_forward::{CoContraction, Inverse, InverseState, LEAST_ACTIVATION};
 use super::fes_params::{FesControllerParams, Measured, Modulation};
 use super::gain_estimate::{GainEstimate, Learnt};
 use super::joint::{Joint, JointError, JointMuscle, TORQUE_UNIT};
@@ -78,9 +78,10 @@ pub struct Sensors<S: Scalar> {
 /// What is commanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FesCommand<S: Scalar> {
-    /// Stimulation of flexor and extensor, 0..1.
+    /// Stimulation of flexor and extensor, 0 or 0.001 to 1.
     pub activations: [S; 2],
-    /// The pulse that recruits it.
+    /// The pulse that recruits it; for 0 the greatest that recruits nothing, which need not be
+    /// given.
     pub pulses: [Pulse<S>; 2],
     /// Torque that was asked of the model's inverse, N m.
     pub torque: S::Quantity,
@@ -250,6 +251,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
                 lead: Lead::build(&lead, step)?,
                 fatigue: fatigue.transpose()?,
                 least_fitness: S::from_f64(params.least_fitness),
+                least_activation: S::from_f64(LEAST_ACTIVATION),
             })
         };
         let electrode = |curve: &RecruitmentCurveParams, modulation: Modulation| {
