@@ -158,7 +158,7 @@ fn named_muscles_have_their_paths() {
     };
     let header = cells(out.lines().next().expect("a header"));
     let column = |name: &str| header.iter().position(|cell| cell == name).expect("a column");
-    let columns = ["shortest m", "neutral path m", "longest m"].map(column);
+    let columns = ["path from m", "neutral path m", "path to m"].map(column);
     let soleus = cells(out.lines().find(|line| line.starts_with("| soleus")).expect("a row"));
     let paths = columns.map(|at| soleus[at].parse::<f64>().expect("a number"));
     assert!(paths.is_sorted(), "{paths:?}");

@@ -24,7 +24,8 @@ pub struct Input<S: Scalar> {
 pub struct Output<S: Scalar> {
     /// Tendon force F0 F_se, in N (in fixed point: mN); never negative. Only the tendon's stiffness
     /// bounds it: a jump of the path, as from a faulty sensor, stretches the tendon by the whole
-    /// jump.
+    /// jump. Such a tick has [`Status::MECHANICS_UNSETTLED`]: a controller that acts on forces
+    /// should keep the last one while it is set.
     pub force: S::Force,
     /// The same relative to F0, F_se. In fixed point with a resolution of 6e-8 F0; that of `force`
     /// is 1 mN.

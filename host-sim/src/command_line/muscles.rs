@@ -10,21 +10,21 @@ const HEADER: [&str; 14] = [
     "muscle",
     "F0 N",
     "mass g",
-    "L_ce0 cm",
-    "L_se0 cm",
-    "L_mt_max cm",
+    "fascicle L_ce0 cm",
+    "tendon L_se0 cm",
+    "longest path L_mt_max cm",
     "neutral path m",
-    "shortest m",
-    "longest m",
-    "slow",
-    "source",
+    "path from m",
+    "path to m",
+    "slow fraction",
+    "source of fraction",
     "pennation deg",
     "error in line, % F0",
     "error with cosine, % F0",
 ];
 
 pub fn run() -> Result<(), Box<dyn Error>> {
-    let numbers = (1..HEADER.len()).filter(|&column| HEADER[column] != "source");
+    let numbers = (1..HEADER.len()).filter(|&column| HEADER[column] != "source of fraction");
     let mut table = markdown_table(&HEADER, numbers);
     for human in muscles::all() {
         let muscle = human.muscle();
@@ -53,7 +53,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         print(&format!("- {assumption}"))?;
     }
     print(
-        &"Paths: neutral at L_ce0 with the tendon at F0; the muscle can rest from shortest to longest. \
+        &"Paths: neutral at L_ce0 with the tendon at F0; the muscle can rest on paths from ... to. \
           Errors: largest of steady force at full activation for fascicles of 0.7 to 1.3 L_ce0; in \
           line: without pennation; with cosine: with F0 cos(angle) and a shifted path.",
     )?;
