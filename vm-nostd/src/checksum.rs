@@ -17,85 +17,31 @@ impl Checksum {
 
     /// Adds a word.
     #[inline]
-    pub fn add(&mut self, word: u32) {
+    pub const fn add(&mut self, word: u32) {
         self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(FACTOR);
     }
 
     /// The checksum.
-    pub fn value(self) -> u32 {
+    pub const fn value(self) -> u32 {
         self.0
     }
-}
 
-/// Values with a checksum over all of their bits.
-#[doc(hidden)]
-pub trait Summed {
-    /// Adds all of its bits.
-    fn sum(&self, checksum: &mut Checksum);
-}
-
-impl Summed for () {
-    fn sum(&self, _: &mut Checksum) {}
-}
-
-impl<T: Summed, const N: usize> Summed for [T; N] {
-    fn sum(&self, checksum: &mut Checksum) {
-        self.iter().for_each(|one| one.sum(checksum));
+    /// The checksum with another word.
+    pub(crate) const fn and_word(mut self, word: u32) -> Self {
+        self.add(word);
+        self
     }
-}
 
-/// Implements [`Summed`] for numbers.
-macro_rules! summed_numbers {
-    ($($number:ty: |$value:ident| $bits:expr;)*) => {
-        $(impl Summed for $number {
-            #[inline]
-            fn sum(&self, checksum: &mut Checksum) {
-                let $value = *self;
-                checksum.add($bits);
-            }
-        })*
-    };
-}
-
-summed_numbers! {
-    bool: |value| value.into();
-    u8: |value| value.into();
-    u32: |value| value;
-    i32: |value| value.cast_unsigned();
-    f32: |value| value.to_bits();
-}
-
-impl Summed for u64 {
-    fn sum(&self, checksum: &mut Checksum) {
-        checksum.add(*self as u32);
-        checksum.add((*self >> 32) as u32);
-    }
-}
-
-impl Summed for usize {
-    fn sum(&self, checksum: &mut Checksum) {
-        (*self as u64).sum(checksum);
-    }
-}
-
-impl Summed for f64 {
-    fn sum(&self, checksum: &mut Checksum) {
-        self.to_bits().sum(checksum);
-    }
-}
-
-/// Implements [`Summed`] for a struct by naming all fields; a missing field does not compile.
-macro_rules! summed {
-    ([$($generics:tt)*] $type:ty { $($field:ident),* $(,)? }) => {
-        impl<$($generics)*> $crate::checksum::Summed for $type {
-            fn sum(&self, checksum: &mut $crate::checksum::Checksum) {
-                let Self { $($field),* } = self;
-                $($crate::checksum::Summed::sum($field, checksum);)*
-            }
+    /// The checksum with a text, byte by byte.
+    pub(crate) const fn and(mut self, text: &str) -> Self {
+        let mut rest = text.as_bytes();
+        while let [byte, after @ ..] = rest {
+            self.add(*byte as u32);
+            rest = after;
         }
-    };
+        self
+    }
 }
-pub(crate) use summed;
 
 #[cfg(test)]
 mod tests {

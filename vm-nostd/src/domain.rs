@@ -1,32 +1,34 @@
 //! Validity ranges of inputs and state.
 
-use crate::checksum::summed;
 use crate::io::Input;
 use crate::params::MuscleParams;
 use crate::params::limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
 use crate::scalar::Scalar;
 use crate::status::Status;
+use crate::summed::summed;
 use crate::tick::admission::admit_one;
 use crate::tick::range::Range;
 
-/// Validity ranges of a muscle's inputs and ranges of its state.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Domain<S: Scalar> {
-    pub(crate) activation: Range<S>,
-    pub(crate) stimulation_frequency: Range<S::Quantity>,
-    pub(crate) path_length: Range<S::PathLength>,
-    /// Validity range of the filaments' equations, L_ce0.
-    pub(crate) filaments: Range<S>,
-    /// V_max of the slowest type, limited to the state range, L_ce0/s: above it FV of all types is
-    /// valid.
-    pub(crate) shortening_velocity: S,
-    /// State range of the length, L_ce0: from the lower end of the validity range to the length of
-    /// a muscle at rest on the longest path, plus a margin.
-    pub(crate) fascicle_length: Range<S>,
-    /// State range of the velocity, L_ce0/s.
-    pub(crate) fascicle_velocity: Range<S>,
-    /// Intersection of `fascicle_length` and `filaments`, L_ce0: lengths that raise no flag.
-    unflagged: Range<S>,
+summed! {
+    /// Validity ranges of a muscle's inputs and ranges of its state.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Domain<S: Scalar> {
+        pub(crate) activation: Range<S>,
+        pub(crate) stimulation_frequency: Range<S::Quantity>,
+        pub(crate) path_length: Range<S::PathLength>,
+        /// Validity range of the filaments' equations, L_ce0.
+        pub(crate) filaments: Range<S>,
+        /// V_max of the slowest type, limited to the state range, L_ce0/s: above it FV of all types is
+        /// valid.
+        pub(crate) shortening_velocity: S,
+        /// State range of the length, L_ce0: from the lower end of the validity range to the length of
+        /// a muscle at rest on the longest path, plus a margin.
+        pub(crate) fascicle_length: Range<S>,
+        /// State range of the velocity, L_ce0/s.
+        pub(crate) fascicle_velocity: Range<S>,
+        /// Intersection of `fascicle_length` and `filaments`, L_ce0: lengths that raise no flag.
+        unflagged: Range<S>,
+    }
 }
 
 /// Mid-tick fascicle length.
@@ -39,8 +41,6 @@ pub(crate) struct MidTickLength<S> {
     /// True if neither was clamped.
     pub(crate) unclamped: bool,
 }
-
-summed!([S: Scalar] Domain<S> { activation, stimulation_frequency, path_length, filaments, shortening_velocity, fascicle_length, fascicle_velocity, unflagged });
 
 impl<S: Scalar> Domain<S> {
     pub(crate) fn new<const N: usize>(params: &MuscleParams<N>) -> Self {

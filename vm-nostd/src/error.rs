@@ -69,7 +69,7 @@ impl fmt::Display for ParameterError {
 impl core::error::Error for ParameterError {}
 
 /// Accepts a value within the bounds; refuses all others, including NaN.
-pub(crate) fn within(
+pub(crate) const fn within(
     field: &'static str,
     value: f64,
     least: f64,

@@ -1,6 +1,5 @@
 //! A fibre type of a built muscle.
 
-use crate::checksum::summed;
 use crate::equations::activation_frequency::ActivationFrequency;
 use crate::equations::excitation::Excitation;
 use crate::equations::force_length::ForceLength;
@@ -9,21 +8,22 @@ use crate::equations::sag::Sag;
 use crate::equations::yielding::Yielding;
 use crate::params::FiberParams;
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
-/// The coefficients of one fibre type.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub struct Fiber<S: Scalar> {
-    pub(crate) excitation: Excitation<S>,
-    pub(crate) sag: Sag<S>,
-    pub(crate) yielding: Yielding<S>,
-    pub(crate) activation: ActivationFrequency<S>,
-    pub(crate) force_length: ForceLength<S>,
-    pub(crate) force_velocity: ForceVelocity<S>,
+summed! {
+    /// The coefficients of one fibre type.
+    #[derive(Clone, Copy, Debug)]
+    #[doc(hidden)]
+    pub struct Fiber<S: Scalar> {
+        pub(crate) excitation: Excitation<S>,
+        pub(crate) sag: Sag<S>,
+        pub(crate) yielding: Yielding<S>,
+        pub(crate) activation: ActivationFrequency<S>,
+        pub(crate) force_length: ForceLength<S>,
+        pub(crate) force_velocity: ForceVelocity<S>,
+    }
 }
-
-summed!([S: Scalar] Fiber<S> { excitation, sag, yielding, activation, force_length, force_velocity });
 
 impl<S: Scalar> Fiber<S> {
     pub(crate) fn new(params: &FiberParams, domain: (f64, f64), step: TimeStep) -> Self {

@@ -3,7 +3,8 @@
 //!
 //! [`MuscleParams`] are validated once, when a [`Muscle`] is built for a [`TimeStep`]. After that
 //! [`Muscle::step`] cannot fail, allocates nothing and has no loop that depends on data. Inputs
-//! outside their range are clipped and flagged in [`Output::status`].
+//! outside their range are clipped and flagged in [`Output::status`]. Firmware that takes a muscle
+//! from words in flash ([`Muscle::from_words`]) contains no code that builds one.
 //!
 //! **Names:** [`Input::activation`] is U of the paper, which OpenSim and MuJoCo call excitation or
 //! control. *Excitation* here (f_int, f_eff) is their activation dynamics. Velocities are in
@@ -115,6 +116,7 @@ mod checksum;
 pub mod control;
 mod curves;
 mod domain;
+mod emitted;
 mod equations;
 mod error;
 mod fiber;
@@ -129,6 +131,7 @@ mod saved;
 mod scalar;
 mod state;
 mod status;
+mod summed;
 #[cfg(test)]
 mod tests;
 mod tick;
@@ -141,6 +144,7 @@ pub use beyond_paper::recruitment_curve::{
 pub use beyond_paper::steady::{Steady, SteadyFes};
 pub use checksum::Checksum;
 pub use curves::{Curves, FiberCurves};
+pub use emitted::{Differs, WordsError};
 pub use equations::activation_frequency::ActivationParams;
 pub use equations::excitation::ExcitationParams;
 pub use equations::force_length::ForceLengthParams;

@@ -1,12 +1,12 @@
 //! A muscle: its coefficients, computed once from the parameters, and the tick.
 
-use crate::checksum::{Checksum, Summed, summed};
+use crate::checksum::Checksum;
 use crate::domain::Domain;
 use crate::equations::force_length::{self, OptimalLength};
 use crate::equations::force_velocity;
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::yielding::Speed;
-use crate::error::{ParameterError, within};
+use crate::error::{Limit, ParameterError, within};
 use crate::fiber::Fiber;
 use crate::io::{Input, Output};
 use crate::mechanics::contraction::{Contractile, Contraction, INERTIA, Motion, largest_inertia};
@@ -19,6 +19,7 @@ use crate::saved::{ROUNDING, RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::status::Status;
+use crate::summed::{Summed, summed};
 use crate::tick::course::Course;
 use crate::tick::range::share;
 use crate::tick::time_step::TimeStep;
@@ -36,27 +37,27 @@ pub type DiscreteMuscle<S, const N: usize, const UNITS: usize> =
 pub type EffectiveLengthMuscle<S, const N: usize, const UNITS: usize> =
     Muscle<S, NaturalDiscrete<EffectiveLength, UNITS>, N>;
 
-/// Coefficients of a muscle of `N` fibre types with arithmetic `S` and recruitment mode `R`.
-///
-/// They are constant; everything that changes is in a [`State`]. One muscle can be used with
-/// several states.
-#[derive(Clone, Copy, Debug)]
-pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
-    pub(crate) domain: Domain<S>,
-    pub(crate) recruitment: R::Coefficients,
-    pub(crate) optimal_length: OptimalLength<S>,
-    pub(crate) fibers: [Fiber<S>; N],
-    pub(crate) parallel: Parallel<S>,
-    pub(crate) compression: Compression<S>,
-    pub(crate) contraction: Contraction<S>,
-    /// F0, as a factor from relative force to force.
-    force: S::Factor,
-    max_isometric_force: S::Force,
-    /// Ticks per second.
-    tick_rate: S::Factor,
+summed! {
+    /// Coefficients of a muscle of `N` fibre types with arithmetic `S` and recruitment mode `R`.
+    ///
+    /// They are constant; everything that changes is in a [`State`]. One muscle can be used with
+    /// several states.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
+        pub(crate) domain: Domain<S>,
+        pub(crate) recruitment: R::Coefficients,
+        pub(crate) optimal_length: OptimalLength<S>,
+        pub(crate) fibers: [Fiber<S>; N],
+        pub(crate) parallel: Parallel<S>,
+        pub(crate) compression: Compression<S>,
+        pub(crate) contraction: Contraction<S>,
+        /// F0, as a factor from relative force to force.
+        force: S::Factor,
+        max_isometric_force: S::Force,
+        /// Ticks per second.
+        tick_rate: S::Factor,
+    }
 }
-
-summed!([S: Scalar, R: Recruitment<S, N>, const N: usize] Muscle<S, R, N> { domain, recruitment, optimal_length, fibers, parallel, compression, contraction, force, max_isometric_force, tick_rate });
 
 /// Number of bisections for the length at rest: accurate to the last bit in `f32`, nearly so in
 /// `f64`.
@@ -114,9 +115,20 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// to that of the parallel elastic element. Returns an error outside
     /// [`path_length_range`](Self::path_length_range).
     pub fn rest(&self, path_length: S::PathLength) -> Result<State<S, R, N>, ParameterError> {
-        let range = &self.domain.path_length;
-        let metres = S::path_metres;
-        within("path_length", metres(path_length), metres(range.least), metres(range.most))?;
+        self.rest_in_range(path_length).ok_or_else(|| {
+            let range = &self.domain.path_length;
+            let [value, least, most] = [path_length, range.least, range.most].map(S::path_metres);
+            let limit = Limit::Within { least, most };
+            ParameterError { field: "path_length", fiber: None, value, limit }
+        })
+    }
+
+    /// The same without the details of an error, and thus without `f64`: `None` outside
+    /// [`path_length_range`](Self::path_length_range).
+    pub fn rest_in_range(&self, path_length: S::PathLength) -> Option<State<S, R, N>> {
+        if !self.domain.path_length.contains(path_length) {
+            return None;
+        }
         let tendon = &self.contraction.tendon;
         let lengths = &self.domain.fascicle_length;
         let mut least = tendon.extension(path_length, lengths.most);
@@ -132,7 +144,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
                 least = extension;
             }
         }
-        Ok(State {
+        Some(State {
             tendon_extension: (least + most).half(),
             fascicle_velocity: S::ZERO,
             path_length,

@@ -5,7 +5,7 @@ pub(crate) mod fixed;
 pub(crate) mod float;
 mod series;
 
-use crate::checksum::Summed;
+use crate::summed::{FromWords, Summed};
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -28,7 +28,7 @@ pub(crate) mod sealed {
 /// registers.
 pub trait Scalar:
     sealed::Sealed
-    + Summed
+    + FromWords
     + Copy
     + Debug
     + PartialEq
@@ -44,22 +44,22 @@ pub trait Scalar:
     /// A word of a saved state.
     type Bits: Copy + Debug + Eq + From<u32> + TryFrom<u64> + Into<u64> + Summed + Send + Sync;
     /// A constant factor of any magnitude.
-    type Factor: Copy + Debug + Summed + Send + Sync;
+    type Factor: Copy + Debug + FromWords + Send + Sync;
     /// State of a lag, with more resolution than the number itself.
     type LagState: Copy + Debug + PartialEq + Send + Sync;
     /// A factor from -1/2 to 1/2, such as a time in ticks since mid-tick.
-    type Part: Copy + Debug + Add<Output = Self::Part> + Summed + Send + Sync;
+    type Part: Copy + Debug + Add<Output = Self::Part> + FromWords + Send + Sync;
     /// A factor from 0 to 1.
     type Unit: Copy + Debug + Send + Sync;
     /// Share, 0..1, of the distance of a lag to its target.
-    type Share: Copy + Debug + Summed + Send + Sync;
+    type Share: Copy + Debug + FromWords + Send + Sync;
     /// A musculotendon path length: m in floating point, µm in fixed point.
-    type PathLength: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
+    type PathLength: Copy + Debug + PartialEq + PartialOrd + FromWords + Send + Sync;
     /// A quantity with a unit: stimulation frequency in pps, pulse amplitude in mA, pulse width in
     /// µs.
-    type Quantity: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
+    type Quantity: Copy + Debug + PartialEq + PartialOrd + FromWords + Send + Sync;
     /// A tendon force: N in floating point, mN in fixed point.
-    type Force: Copy + Debug + PartialEq + PartialOrd + Summed + Send + Sync;
+    type Force: Copy + Debug + PartialEq + PartialOrd + FromWords + Send + Sync;
 
     /// Number of the arithmetic in a saved state.
     #[doc(hidden)]

@@ -1,9 +1,10 @@
 //! State of a muscle.
 
-use crate::checksum::{Checksum, Summed};
+use crate::checksum::Checksum;
 use crate::equations::yielding::Speed;
 use crate::recruitment::{NaturalContinuous, Recruitment, RecruitmentState};
 use crate::scalar::Scalar;
+use crate::summed::Summed;
 
 /// State of a muscle of `N` fibre types with recruitment `R`: plain data that can be copied.
 ///

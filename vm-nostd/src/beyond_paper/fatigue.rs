@@ -8,12 +8,13 @@
 //! frequency, Riener & Veltink, IEEE Trans. Biomed. Eng. 45 (1998) 105-113. It is not part of
 //! Virtual Muscle and does not change the bits of a muscle without it.
 
-use crate::checksum::{Checksum, Summed, summed};
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::io::Output;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::summed::{Summed, summed};
 use crate::tick::admission::admit_one;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -88,40 +89,40 @@ impl<S: Scalar> FatigueState<S> {
 /// Step of fitness; 1 is a multiple of it.
 const STEP: f64 = 1.0 / 16384.0;
 
-/// Coefficients of fatigue and recovery for a time step.
-///
-/// ```
-/// use vm_nostd::{Fatigue, FatigueParams, TimeStep};
-/// let fatigue = Fatigue::<f32>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)?;
-/// let mut state = fatigue.rested();
-/// // 30 s at 20 pps, then 30 s of rest.
-/// for _ in 0..30_000 {
-///     fatigue.advance(&mut state, 1.0, 20.0);
-/// }
-/// let tired = state.fitness();
-/// for _ in 0..30_000 {
-///     fatigue.advance(&mut state, 0.0, 20.0);
-/// }
-/// assert!((tired - 0.602).abs() < 0.001 && (state.fitness() - 0.854).abs() < 0.001);
-/// # Ok::<(), vm_nostd::ParameterError>(())
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Fatigue<S: Scalar> {
-    activation: Range<S>,
-    frequency: Range<S::Quantity>,
-    /// 1/100, per pps.
-    per_saturating_frequency: S::Factor,
-    least_fitness: S,
-    frequency_dependence: S,
-    /// Share per tick of the distance to the least fitness, and of that to 1.
-    tire: S::Share,
-    recover: S::Share,
-    step: S,
-    /// A share of 1.
-    all: S::Share,
+summed! {
+    /// Coefficients of fatigue and recovery for a time step.
+    ///
+    /// ```
+    /// use vm_nostd::{Fatigue, FatigueParams, TimeStep};
+    /// let fatigue = Fatigue::<f32>::build(&FatigueParams::QUADRICEPS, TimeStep::MILLISECOND)?;
+    /// let mut state = fatigue.rested();
+    /// // 30 s at 20 pps, then 30 s of rest.
+    /// for _ in 0..30_000 {
+    ///     fatigue.advance(&mut state, 1.0, 20.0);
+    /// }
+    /// let tired = state.fitness();
+    /// for _ in 0..30_000 {
+    ///     fatigue.advance(&mut state, 0.0, 20.0);
+    /// }
+    /// assert!((tired - 0.602).abs() < 0.001 && (state.fitness() - 0.854).abs() < 0.001);
+    /// # Ok::<(), vm_nostd::ParameterError>(())
+    /// ```
+    #[derive(Clone, Copy, Debug)]
+    pub struct Fatigue<S: Scalar> {
+        activation: Range<S>,
+        frequency: Range<S::Quantity>,
+        /// 1/100, per pps.
+        per_saturating_frequency: S::Factor,
+        least_fitness: S,
+        frequency_dependence: S,
+        /// Share per tick of the distance to the least fitness, and of that to 1.
+        tire: S::Share,
+        recover: S::Share,
+        step: S,
+        /// A share of 1.
+        all: S::Share,
+    }
 }
-
-summed!([S: Scalar] Fatigue<S> { activation, frequency, per_saturating_frequency, least_fitness, frequency_dependence, tire, recover, step, all });
 
 /// Distinguishes saved fatigue from saved muscles: no mode has this number.
 const FATIGUE: u32 = 0;

@@ -12,9 +12,10 @@
 //! middle and 1/m at both ends, it is exactly 0 and 1 at the ends, and its inverse has the same
 //! form.
 
-use crate::checksum::{Checksum, Summed, summed};
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::{Summed, summed};
 use crate::tick::admission::{Admission, admit_one};
 use crate::tick::range::Range;
 
@@ -82,52 +83,50 @@ pub struct Pulse<S: Scalar> {
     pub width: S::Quantity,
 }
 
-/// Coefficients of a recruitment curve. Its methods cannot fail and have no data-dependent loops.
-///
-/// Activation is monotonic in amplitude and width.
-///
-/// ```
-/// use vm_nostd::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
-/// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
-///     threshold: 4e-3,
-///     saturation: 12e-3,
-///     chronaxie: 200e-6,
-///     slope: 2.0,
-/// })?;
-/// // Twice the mean of threshold and saturation, with the width of the chronaxie.
-/// let (activation, status) = curve.activation(Pulse { amplitude: 16.0, width: 200.0 });
-/// assert!((activation - 0.5).abs() < 1e-6);
-/// assert!(status.is_empty());
-/// let (amplitude, _) = curve.amplitude_for(activation, 200.0);
-/// assert!((amplitude - 16.0).abs() < 1e-4);
-/// assert_eq!(curve.activation(Pulse { amplitude: 7.9, width: 200.0 }).0, 0.0);
-/// assert_eq!(curve.amplitude_for(0.5, 0.0).1, PulseStatus::UNREACHABLE);
-/// # Ok::<(), vm_nostd::ParameterError>(())
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct RecruitmentCurve<S: Scalar> {
-    amplitudes: Range<S::Quantity>,
-    widths: Range<S::Quantity>,
-    activations: Range<S>,
-    /// 1/saturation, per mA.
-    per_saturation: S::Factor,
-    /// mA.
-    saturation: S::Factor,
-    /// 1/chronaxie, per µs.
-    per_chronaxie: S::Factor,
-    /// µs.
-    chronaxie: S::Factor,
-    /// threshold/saturation.
-    threshold: S,
-    /// (saturation - threshold)/saturation, and one over it.
-    reach: S::Factor,
-    per_reach: S::Factor,
-    slope: S,
+summed! {
+    /// Coefficients of a recruitment curve. Its methods cannot fail and have no data-dependent loops.
+    ///
+    /// Activation is monotonic in amplitude and width.
+    ///
+    /// ```
+    /// use vm_nostd::{Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams};
+    /// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
+    ///     threshold: 4e-3,
+    ///     saturation: 12e-3,
+    ///     chronaxie: 200e-6,
+    ///     slope: 2.0,
+    /// })?;
+    /// // Twice the mean of threshold and saturation, with the width of the chronaxie.
+    /// let (activation, status) = curve.activation(Pulse { amplitude: 16.0, width: 200.0 });
+    /// assert!((activation - 0.5).abs() < 1e-6);
+    /// assert!(status.is_empty());
+    /// let (amplitude, _) = curve.amplitude_for(activation, 200.0);
+    /// assert!((amplitude - 16.0).abs() < 1e-4);
+    /// assert_eq!(curve.activation(Pulse { amplitude: 7.9, width: 200.0 }).0, 0.0);
+    /// assert_eq!(curve.amplitude_for(0.5, 0.0).1, PulseStatus::UNREACHABLE);
+    /// # Ok::<(), vm_nostd::ParameterError>(())
+    /// ```
+    #[derive(Clone, Copy, Debug)]
+    pub struct RecruitmentCurve<S: Scalar> {
+        amplitudes: Range<S::Quantity>,
+        widths: Range<S::Quantity>,
+        activations: Range<S>,
+        /// 1/saturation, per mA.
+        per_saturation: S::Factor,
+        /// mA.
+        saturation: S::Factor,
+        /// 1/chronaxie, per µs.
+        per_chronaxie: S::Factor,
+        /// µs.
+        chronaxie: S::Factor,
+        /// threshold/saturation.
+        threshold: S,
+        /// (saturation - threshold)/saturation, and one over it.
+        reach: S::Factor,
+        per_reach: S::Factor,
+        slope: S,
+    }
 }
-
-summed!([S: Scalar] RecruitmentCurve<S> {
-    amplitudes, widths, activations, per_saturation, saturation, per_chronaxie, chronaxie, threshold, reach, per_reach, slope
-});
 
 impl<S: Scalar> RecruitmentCurve<S> {
     /// Builds a curve; the error has field, value and limit.

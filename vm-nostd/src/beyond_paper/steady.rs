@@ -10,7 +10,6 @@
 //! the nearest one is found by bisection; if the tendon is so long that there may be several
 //! equilibria, the result is checked by bisection.
 
-use crate::checksum::summed;
 use crate::domain::Domain;
 use crate::equations::activation_frequency::{self, ActivationFrequency};
 use crate::equations::force_length::{self, ForceLength, OptimalLength};
@@ -23,73 +22,75 @@ use crate::muscle::FesMuscle;
 use crate::params::MuscleParams;
 use crate::scalar::Scalar;
 use crate::status::Status;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
-/// Steady state of a muscle under intramuscular FES.
-///
-/// ```
-/// use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
-/// use vm_nostd::{Class, FiberParams, MuscleParams, Status, SteadyFes};
-/// use vm_nostd::{RecruitmentCurve, RecruitmentCurveParams};
-///
-/// # let fibers = [
-/// #     FiberParams { fraction: 0.6, fiber_type: SLOW },
-/// #     FiberParams { fraction: 0.4, fiber_type: FAST },
-/// # ];
-/// # let params = MuscleParams {
-/// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
-/// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS, fibers,
-/// # };
-/// let steady = SteadyFes::<f32, 2>::build(&params)?;
-/// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
-///     threshold: 1e-3,  // A
-///     saturation: 6e-3, // A
-///     chronaxie: 2e-4,  // s
-///     slope: 2.0,
-/// })?;
-/// // Pulse width at 10 mA that holds 60 N at 16 cm and 20 pps.
-/// let wanted = steady.activation_for(60.0, 0.16, 20.0);
-/// assert_eq!(wanted.status, Status::empty());
-/// let (width, status) = curve.width_for(wanted.activation, 10.0);
-/// assert!(status.is_empty() && (50.0..200.0).contains(&width));
-/// // 500 N is more than this muscle can hold.
-/// assert_eq!(steady.activation_for(500.0, 0.16, 20.0).status, Status::FORCE_UNREACHABLE);
-/// # Ok::<(), vm_nostd::ParameterError>(())
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct SteadyFes<S: Scalar, const N: usize> {
-    domain: Domain<S>,
-    optimal_length: OptimalLength<S>,
-    fibers: [SteadyFiber<S>; N],
-    parallel: Parallel<S>,
-    compression: Compression<S>,
-    tendon: Tendon<S>,
-    tendon_inverse: TendonInverse<S>,
-    firing: S,
-    rounding: S,
-    /// Rounding tolerance of a force in N or mN: half a step.
-    rounding_of_force: S,
-    promised: S,
-    /// There may be more than one equilibrium.
-    ambiguous: bool,
-    /// F0, and its reciprocal.
-    force: S::Factor,
-    per_force: S::Factor,
+summed! {
+    /// Steady state of a muscle under intramuscular FES.
+    ///
+    /// ```
+    /// use vm_nostd::paper_table_1::{ELEMENTS, FAST, SLOW};
+    /// use vm_nostd::{Class, FiberParams, MuscleParams, Status, SteadyFes};
+    /// use vm_nostd::{RecruitmentCurve, RecruitmentCurveParams};
+    ///
+    /// # let fibers = [
+    /// #     FiberParams { fraction: 0.6, fiber_type: SLOW },
+    /// #     FiberParams { fraction: 0.4, fiber_type: FAST },
+    /// # ];
+    /// # let params = MuscleParams {
+    /// #     mass: 97.5e-3, fascicle_length: 0.11, tendon_length: 0.02, max_path_length: 0.184,
+    /// #     recruitment_saturation: 0.8, class: Class::Standard, elements: ELEMENTS, fibers,
+    /// # };
+    /// let steady = SteadyFes::<f32, 2>::build(&params)?;
+    /// let curve = RecruitmentCurve::<f32>::build(&RecruitmentCurveParams {
+    ///     threshold: 1e-3,  // A
+    ///     saturation: 6e-3, // A
+    ///     chronaxie: 2e-4,  // s
+    ///     slope: 2.0,
+    /// })?;
+    /// // Pulse width at 10 mA that holds 60 N at 16 cm and 20 pps.
+    /// let wanted = steady.activation_for(60.0, 0.16, 20.0);
+    /// assert_eq!(wanted.status, Status::empty());
+    /// let (width, status) = curve.width_for(wanted.activation, 10.0);
+    /// assert!(status.is_empty() && (50.0..200.0).contains(&width));
+    /// // 500 N is more than this muscle can hold.
+    /// assert_eq!(steady.activation_for(500.0, 0.16, 20.0).status, Status::FORCE_UNREACHABLE);
+    /// # Ok::<(), vm_nostd::ParameterError>(())
+    /// ```
+    #[derive(Clone, Copy, Debug)]
+    pub struct SteadyFes<S: Scalar, const N: usize> {
+        domain: Domain<S>,
+        optimal_length: OptimalLength<S>,
+        fibers: [SteadyFiber<S>; N],
+        parallel: Parallel<S>,
+        compression: Compression<S>,
+        tendon: Tendon<S>,
+        tendon_inverse: TendonInverse<S>,
+        firing: S,
+        rounding: S,
+        /// Rounding tolerance of a force in N or mN: half a step.
+        rounding_of_force: S,
+        promised: S,
+        /// There may be more than one equilibrium.
+        ambiguous: bool,
+        /// F0, and its reciprocal.
+        force: S::Factor,
+        per_force: S::Factor,
+    }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct SteadyFiber<S: Scalar> {
-    fraction: S,
-    activation: ActivationFrequency<S>,
-    force_length: ForceLength<S>,
-    /// S at rest and firing.
-    sag: [S; 2],
-    /// 1/f0.5, s.
-    per_half_force_frequency: S::Factor,
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    struct SteadyFiber<S: Scalar> {
+        fraction: S,
+        activation: ActivationFrequency<S>,
+        force_length: ForceLength<S>,
+        /// S at rest and firing.
+        sag: [S; 2],
+        /// 1/f0.5, s.
+        per_half_force_frequency: S::Factor,
+    }
 }
-
-summed!([S: Scalar] SteadyFiber<S> { fraction, activation, force_length, sag, per_half_force_frequency });
-summed!([S: Scalar, const N: usize] SteadyFes<S, N> { domain, optimal_length, fibers, parallel, compression, tendon, tendon_inverse, firing, rounding, rounding_of_force, promised, ambiguous, force, per_force });
 
 /// A steady state.
 #[derive(Clone, Copy, Debug, PartialEq)]

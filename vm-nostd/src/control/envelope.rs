@@ -8,11 +8,12 @@
 //!
 //! (Buchanan, Lloyd, Manal & Besier, J. Appl. Biomech. 20 (2004) 367-395).
 
-use crate::checksum::{Checksum, Summed};
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::scalar::float::square_root;
+use crate::summed::{FromWords, Sink, Summed, Words, summed};
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::range::share;
@@ -55,34 +56,46 @@ impl EnvelopeParams {
     }
 }
 
-/// An envelope with a delay line of at most `D` ticks.
+/// A, and 1/(exp(A) - 1); none if a parabola does.
 #[derive(Clone, Copy, Debug)]
-pub struct Envelope<S: Scalar, const D: usize> {
-    lag: Lag<S>,
-    /// 1/(maximal - rest), per mV, and rest in that unit.
-    per_range: S::Factor,
-    rest: S,
-    greatest: S,
-    ticks: usize,
-    /// A, and 1/(exp(A) - 1); none if a parabola does.
-    shape: Option<(S, S)>,
-    /// A/2, of the parabola u (1 + A/2 (u - 1)).
-    bend: S,
+struct Shape<S>(Option<[S; 2]>);
+
+/// Two words; without a shape both are those of 0.
+impl<S: Scalar> Summed for Shape<S> {
+    fn sum<T: Sink>(&self, sink: &mut T) {
+        self.0.unwrap_or([S::ZERO; 2]).sum(sink);
+    }
 }
 
-impl<S: Scalar, const D: usize> Summed for Envelope<S, D> {
-    fn sum(&self, checksum: &mut Checksum) {
-        let Self { lag, per_range, rest, greatest, ticks, shape, bend } = self;
-        bend.sum(checksum);
-        greatest.sum(checksum);
-        lag.sum(checksum);
-        per_range.sum(checksum);
-        rest.sum(checksum);
-        ticks.sum(checksum);
-        let (exponent, factor) = shape.unwrap_or((S::ZERO, S::ZERO));
-        exponent.sum(checksum);
-        factor.sum(checksum);
+impl<S: Scalar> FromWords for Shape<S> {
+    const WORDS: usize = <[S; 2]>::WORDS;
+    const LAYOUT: Checksum = <[S; 2]>::LAYOUT;
+
+    /// No shape has an exponent of 0.
+    fn read(words: &mut Words<'_>) -> Option<Self> {
+        match <[S; 2]>::read(words)? {
+            [exponent, factor] if exponent < S::ZERO => Some(Self(Some([exponent, factor]))),
+            none => (none == [S::ZERO; 2]).then_some(Self(None)),
+        }
     }
+}
+
+summed! {
+    /// An envelope with a delay line of at most `D` ticks.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Envelope<S: Scalar, const D: usize> {
+        /// A/2, of the parabola u (1 + A/2 (u - 1)).
+        bend: S,
+        greatest: S,
+        lag: Lag<S>,
+        /// 1/(maximal - rest), per mV, and rest in that unit.
+        per_range: S::Factor,
+        rest: S,
+        ticks: usize,
+        shape: Shape<S>,
+    }
+
+    valid: |envelope| envelope.ticks <= D
 }
 
 /// State of an envelope.
@@ -124,8 +137,10 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
             rest: S::from_f64(params.rest / range),
             greatest: S::from_f64(params.rest / range + GREATEST),
             ticks: (params.delay / step.seconds() + 0.5) as usize,
-            shape: (shape <= NEARLY_STRAIGHT)
-                .then(|| (S::from_f64(shape), S::from_f64(1.0 / (Scalar::exp(shape) - 1.0)))),
+            shape: Shape(
+                (shape <= NEARLY_STRAIGHT)
+                    .then(|| [S::from_f64(shape), S::from_f64(1.0 / (Scalar::exp(shape) - 1.0))]),
+            ),
             bend: S::from_f64(0.5 * shape),
         })
     }
@@ -150,9 +165,9 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
         state.lags = [first, second];
         let now = (S::of(second) - self.rest).max(S::ZERO).min(S::ONE);
         let delayed = self.delayed(state, now);
-        let activation = match self.shape {
+        let activation = match self.shape.0 {
             None => delayed * (S::ONE + self.bend * (delayed - S::ONE)),
-            Some((exponent, factor)) => ((exponent * delayed).exp() - S::ONE) * factor,
+            Some([exponent, factor]) => ((exponent * delayed).exp() - S::ONE) * factor,
         };
         (activation.max(S::ZERO).min(S::ONE), clipped || !finite)
     }

@@ -6,37 +6,28 @@
 use super::lead::{Lead, LeadState};
 use crate::beyond_paper::fatigue::{Fatigue, FatigueState};
 use crate::beyond_paper::steady::SteadyFes;
-use crate::checksum::{Checksum, Summed, summed};
 use crate::scalar::Scalar;
 use crate::status::Status;
+use crate::summed::summed;
 
 /// Least activation that is worth a pulse. What is left in the lead of a muscle that is no longer
 /// wanted decays for seconds, and would give pulses at the threshold of its electrode all the while.
 pub(super) const LEAST_ACTIVATION: f64 = 1e-3;
 
-/// What one muscle needs for the inverse.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Inverse<S: Scalar, const N: usize> {
-    pub(super) steady: SteadyFes<S, N>,
-    pub(super) lead: Lead<S>,
-    pub(super) fatigue: Option<Fatigue<S>>,
-    /// Fitness that is made up for at most.
-    pub(super) least_fitness: S,
-    /// [`LEAST_ACTIVATION`].
-    pub(super) least_activation: S,
-}
-
-impl<S: Scalar, const N: usize> Summed for Inverse<S, N> {
-    fn sum(&self, checksum: &mut Checksum) {
-        let Self { steady, lead, fatigue, least_fitness, least_activation } = self;
-        steady.sum(checksum);
-        lead.sum(checksum);
-        if let Some(fatigue) = fatigue {
-            fatigue.sum(checksum);
-        }
-        least_fitness.sum(checksum);
-        least_activation.sum(checksum);
+summed! {
+    /// What one muscle needs for the inverse.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Inverse<S: Scalar, const N: usize> {
+        pub(super) steady: SteadyFes<S, N>,
+        pub(super) lead: Lead<S>,
+        pub(super) fatigue: Option<Fatigue<S>>,
+        /// Fitness that is made up for at most.
+        pub(super) least_fitness: S,
+        /// [`LEAST_ACTIVATION`].
+        pub(super) least_activation: S,
     }
+
+    sum only
 }
 
 /// State of the inverse of one muscle.
@@ -60,14 +51,14 @@ pub(super) struct Shares<S> {
     pub(super) torques: [S; 2],
 }
 
-/// The coefficients that do not belong to a muscle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CoContraction<S> {
-    /// Torque that each muscle makes against the other.
-    pub(super) torque: S,
+summed! {
+    /// The coefficients that do not belong to a muscle.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct CoContraction<S> {
+        /// Torque that each muscle makes against the other.
+        pub(super) torque: S,
+    }
 }
-
-summed!([S: Scalar] CoContraction<S> { torque });
 
 impl<S: Scalar> CoContraction<S> {
     /// Flexor and extensor that together make a torque.

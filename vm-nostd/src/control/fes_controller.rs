@@ -16,12 +16,13 @@ use crate::beyond_paper::recruitment_curve::{
     Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams,
 };
 use crate::beyond_paper::steady::SteadyFes;
-use crate::checksum::{Checksum, Summed};
+use crate::checksum::Checksum;
 use crate::error::ParameterError;
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::status::Status;
+use crate::summed::{Summed, summed};
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -93,80 +94,37 @@ pub struct FesCommand<S: Scalar> {
     pub status: ControlStatus,
 }
 
-/// A controller of a joint with a flexor and an extensor.
-#[derive(Clone, Copy, Debug)]
-pub struct FesController<S: Scalar, const N: usize> {
-    range: Range<S>,
-    joint: Joint<S, 1, 2>,
-    limb: Limb<S>,
-    inverses: [Inverse<S, N>; 2],
-    electrodes: [Electrode<S>; 2],
-    cocontraction: CoContraction<S>,
-    feedback: Pi<S>,
-    of_torque: bool,
-    expected: Lag<S>,
-    gain: Option<GainEstimate<S>>,
-    torque: Range<S>,
-    per_torque: S::Factor,
-    frequency: S::Quantity,
-    most_motion: S,
-    most_torque: S,
-}
-
-/// A recruitment curve, and the half of the pulse that is constant.
-#[derive(Clone, Copy, Debug)]
-struct Electrode<S: Scalar> {
-    curve: RecruitmentCurve<S>,
-    by_width: bool,
-    constant: S::Quantity,
-}
-
-impl<S: Scalar> Summed for Electrode<S> {
-    fn sum(&self, checksum: &mut Checksum) {
-        let Self { curve, by_width, constant } = self;
-        curve.sum(checksum);
-        u8::from(*by_width).sum(checksum);
-        constant.sum(checksum);
+summed! {
+    /// A controller of a joint with a flexor and an extensor.
+    #[derive(Clone, Copy, Debug)]
+    pub struct FesController<S: Scalar, const N: usize> {
+        range: Range<S>,
+        joint: Joint<S, 1, 2>,
+        limb: Limb<S>,
+        inverses: [Inverse<S, N>; 2],
+        electrodes: [Electrode<S>; 2],
+        cocontraction: CoContraction<S>,
+        feedback: Pi<S>,
+        of_torque: bool,
+        expected: Lag<S>,
+        gain: Option<GainEstimate<S>>,
+        torque: Range<S>,
+        per_torque: S::Factor,
+        frequency: S::Quantity,
+        most_motion: S,
+        most_torque: S,
     }
+
+    sum only
 }
 
-impl<S: Scalar, const N: usize> Summed for FesController<S, N> {
-    fn sum(&self, checksum: &mut Checksum) {
-        // Without `..`: a field that is added has to be summed.
-        let Self {
-            range,
-            joint,
-            limb,
-            inverses,
-            electrodes,
-            cocontraction,
-            feedback,
-            of_torque,
-            expected,
-            gain,
-            torque,
-            per_torque,
-            frequency,
-            most_motion,
-            most_torque,
-        } = self;
-        range.sum(checksum);
-        joint.sum(checksum);
-        limb.sum(checksum);
-        inverses.sum(checksum);
-        electrodes.sum(checksum);
-        cocontraction.sum(checksum);
-        feedback.sum(checksum);
-        u8::from(*of_torque).sum(checksum);
-        expected.sum(checksum);
-        if let Some(gain) = gain {
-            gain.sum(checksum);
-        }
-        torque.sum(checksum);
-        per_torque.sum(checksum);
-        frequency.sum(checksum);
-        most_motion.sum(checksum);
-        most_torque.sum(checksum);
+summed! {
+    /// A recruitment curve, and the half of the pulse that is constant.
+    #[derive(Clone, Copy, Debug)]
+    struct Electrode<S: Scalar> {
+        curve: RecruitmentCurve<S>,
+        by_width: bool,
+        constant: S::Quantity,
     }
 }
 

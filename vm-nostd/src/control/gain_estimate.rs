@@ -5,10 +5,10 @@
 //! says how far the estimate is off: dĝ/dt = -(p/c)/T moves it until p is 0. It is a gradient rule,
 //! slower than the feedback so that both do not fight.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
@@ -38,15 +38,15 @@ impl GainParams {
     }
 }
 
-/// An estimate's coefficients.
-#[derive(Clone, Copy, Debug)]
-pub struct GainEstimate<S: Scalar> {
-    share: S::Share,
-    range: Range<S>,
-    excitation: S,
+summed! {
+    /// An estimate's coefficients.
+    #[derive(Clone, Copy, Debug)]
+    pub struct GainEstimate<S: Scalar> {
+        share: S::Share,
+        range: Range<S>,
+        excitation: S,
+    }
 }
-
-summed!([S: Scalar] GainEstimate<S> { share, range, excitation });
 
 /// What an update has done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

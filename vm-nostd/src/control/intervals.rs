@@ -11,24 +11,24 @@
 //! high frequency. What it cannot show: the twitch of a single pulse, summation within one
 //! interval, the catch-like property (force that stays higher after a doublet).
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::params::limits::MAXIMUM_STIMULATION_FREQUENCY;
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
-/// Turns pulses into a stimulation frequency.
-#[derive(Clone, Copy, Debug)]
-pub struct Intervals<S: Scalar> {
-    /// A tick, and the pause that ends a train, in sixteenths of a second.
-    tick: S,
-    pause: S,
-    unit: S::Factor,
-    most: S::Quantity,
-    none: S::Quantity,
+summed! {
+    /// Turns pulses into a stimulation frequency.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Intervals<S: Scalar> {
+        /// A tick, and the pause that ends a train, in sixteenths of a second.
+        tick: S,
+        pause: S,
+        unit: S::Factor,
+        most: S::Quantity,
+        none: S::Quantity,
+    }
 }
-
-summed!([S: Scalar] Intervals<S> { tick, pause, unit, most, none });
 
 /// Time since the last pulse, and the interval before it; 0 for none.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,10 +3,11 @@
 //! τ_j = Σ_i F_i r_ij over the muscles i, with the moment arms r of [`path`](super::path).
 
 use super::path::{AngleRange, Axis, Path, PathParams, Placed, count};
-use crate::checksum::{Checksum, Summed, summed};
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::params::MuscleParams;
 use crate::scalar::Scalar;
+use crate::summed::{Summed, summed};
 use core::fmt;
 
 bitflags::bitflags! {
@@ -66,37 +67,38 @@ impl fmt::Display for JointError {
 
 impl core::error::Error for JointError {}
 
-/// `M` muscles about `J` joints (1 or 2).
-///
-/// ```
-/// use vm_nostd::control::{ANKLE, Joint, JointStatus};
-/// let muscles = ANKLE.muscles.map(|muscle| muscle.on_joint());
-/// let ankle = Joint::<f32, 1, 2>::build(&[ANKLE.range], &muscles)?;
-/// let posture = ankle.posture([0.0]); // rad
-/// assert_eq!(posture.status, JointStatus::empty());
-/// // Tibialis anterior at half of F0, soleus slack: 905 N × 0.5 × about 4 cm.
-/// let [torque] = ankle.torques(&posture, &[0.5, 0.0]);
-/// assert!((15.0..20.0).contains(&torque), "{torque} N m");
-/// # Ok::<(), vm_nostd::control::JointError>(())
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Joint<S: Scalar, const J: usize, const M: usize> {
-    axes: [Axis<S>; J],
-    muscles: [Acting<S, J>; M],
-    unit: S::Factor,
+summed! {
+    /// `M` muscles about `J` joints (1 or 2).
+    ///
+    /// ```
+    /// use vm_nostd::control::{ANKLE, Joint, JointStatus};
+    /// let muscles = ANKLE.muscles.map(|muscle| muscle.on_joint());
+    /// let ankle = Joint::<f32, 1, 2>::build(&[ANKLE.range], &muscles)?;
+    /// let posture = ankle.posture([0.0]); // rad
+    /// assert_eq!(posture.status, JointStatus::empty());
+    /// // Tibialis anterior at half of F0, soleus slack: 905 N × 0.5 × about 4 cm.
+    /// let [torque] = ankle.torques(&posture, &[0.5, 0.0]);
+    /// assert!((15.0..20.0).contains(&torque), "{torque} N m");
+    /// # Ok::<(), vm_nostd::control::JointError>(())
+    /// ```
+    #[derive(Clone, Copy, Debug)]
+    pub struct Joint<S: Scalar, const J: usize, const M: usize> {
+        axes: [Axis<S>; J],
+        muscles: [Acting<S, J>; M],
+        unit: S::Factor,
+    }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Acting<S: Scalar, const J: usize> {
-    path: Path<S, J>,
-    /// F0 in torque units per m.
-    force: S::Factor,
-    /// F0/L_ce0 in torque units per m².
-    force_per_length: S::Factor,
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    struct Acting<S: Scalar, const J: usize> {
+        path: Path<S, J>,
+        /// F0 in torque units per m.
+        force: S::Factor,
+        /// F0/L_ce0 in torque units per m².
+        force_per_length: S::Factor,
+    }
 }
-
-summed!([S: Scalar, const J: usize] Acting<S, J> { path, force, force_per_length });
-summed!([S: Scalar, const J: usize, const M: usize] Joint<S, J, M> { axes, muscles, unit });
 
 impl<S: Scalar, const M: usize> Joint<S, 1, M> {
     /// Forces (F0) with which each muscle alone makes a torque of its own (units of 1,024 N m); 0

@@ -3,11 +3,11 @@
 //! Excitation is two lags of a time constant T in series (T differs for rising and falling). Two
 //! leads (1 + T s)/(1 + T_f s) in series cancel them and leave two lags of the filter time T_f.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -53,17 +53,17 @@ impl LeadParams {
     }
 }
 
-/// A filtered lead.
-#[derive(Clone, Copy, Debug)]
-pub struct Lead<S: Scalar> {
-    filter: Lag<S>,
-    /// T/T_f of rising and falling.
-    rise: S,
-    fall: S,
-    most: S,
+summed! {
+    /// A filtered lead.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Lead<S: Scalar> {
+        filter: Lag<S>,
+        /// T/T_f of rising and falling.
+        rise: S,
+        fall: S,
+        most: S,
+    }
 }
-
-summed!([S: Scalar] Lead<S> { filter, rise, fall, most });
 
 /// State of a lead: the filtered input of both stages.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,10 +4,10 @@
 //! of the limb's weight at its centre's distance from the joint.
 
 use super::path::{AngleRange, Axis};
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::tangent;
+use crate::summed::summed;
 
 /// Parameters of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,17 +40,17 @@ const TERMS: usize = 10;
 /// Widest range of a limb that has weight, rad.
 const WIDEST: f64 = 4.0;
 
-/// A limb, ready for a tick; torques count in a unit.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limb<S: Scalar> {
-    inertia: S::Factor,
-    damping: S::Factor,
-    axis: Axis<S>,
-    /// G sin(q - q_hang) by powers of the share of the range.
-    gravity: [S; TERMS],
+summed! {
+    /// A limb, ready for a tick; torques count in a unit.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Limb<S: Scalar> {
+        inertia: S::Factor,
+        damping: S::Factor,
+        axis: Axis<S>,
+        /// G sin(q - q_hang) by powers of the share of the range.
+        gravity: [S; TERMS],
+    }
 }
-
-summed!([S: Scalar] Limb<S> { inertia, damping, axis, gravity });
 
 impl<S: Scalar> Limb<S> {
     pub(super) fn new(

@@ -1,8 +1,8 @@
 //! Limits of a command: range and rate.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
 /// Range and rate of a command, in its unit and per second.
@@ -18,16 +18,16 @@ pub struct CommandLimits {
     pub rate: f64,
 }
 
-/// The limits, in units of the torque.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limiter<S: Scalar> {
-    least: S,
-    most: S,
-    /// Greatest change per tick.
-    change: S,
+summed! {
+    /// The limits, in units of the torque.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Limiter<S: Scalar> {
+        least: S,
+        most: S,
+        /// Greatest change per tick.
+        change: S,
+    }
 }
-
-summed!([S: Scalar] Limiter<S> { least, most, change });
 
 /// What a limiter had to change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,9 +8,9 @@
 //! al., J. Biomech. Eng. 106 (1984) 280-282, tendon-joint displacement). It is positive where the
 //! muscle flexes, towards greater angles.
 
-use crate::checksum::summed;
 use crate::error::{Limit, ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 
 /// Highest power of an angle.
 pub const ORDER: usize = 6;
@@ -271,16 +271,16 @@ fn turning(slope: impl Fn(f64) -> f64, mut least: f64, mut most: f64) -> f64 {
     0.5 * (least + most)
 }
 
-/// The joints' angles as a path takes them: x = (q - middle)/half of the range, -1..1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Axis<S: Scalar> {
-    pub(super) least: S,
-    pub(super) most: S,
-    middle: S,
-    per_half: S::Factor,
+summed! {
+    /// The joints' angles as a path takes them: x = (q - middle)/half of the range, -1..1.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Axis<S: Scalar> {
+        pub(super) least: S,
+        pub(super) most: S,
+        middle: S,
+        per_half: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Axis<S> { least, most, middle, per_half });
 
 impl<S: Scalar> Axis<S> {
     pub(super) fn new(range: &AngleRange) -> Self {
@@ -301,28 +301,28 @@ impl<S: Scalar> Axis<S> {
 /// Polynomials count in this unit, m: in fixed point its ULP is 6 nm.
 const UNIT: f64 = 0.1;
 
-/// A path, ready for a tick.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Path<S: Scalar, const J: usize> {
-    /// Path in the middle of the ranges.
-    middle: S::PathLength,
-    /// Its change by powers of x of each joint, decimetres.
-    change: [[S; POWERS]; J],
-    /// -d change/dx, decimetres.
-    arm: [[S; ORDER]; J],
-    /// d arm/dx, decimetres.
-    slope: [[S; ORDER]; J],
-    /// Coefficient of x_1 x_2, decimetres.
-    product: S,
-    /// Decimetres to path lengths.
-    unit: S::Factor,
-    /// 0.1 m over the half range: decimetres per x to m/rad.
-    per_angle: [S::Factor; J],
-    /// The same over the half range once more.
-    per_angle_squared: [S::Factor; J],
+summed! {
+    /// A path, ready for a tick.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Path<S: Scalar, const J: usize> {
+        /// Path in the middle of the ranges.
+        middle: S::PathLength,
+        /// Its change by powers of x of each joint, decimetres.
+        change: [[S; POWERS]; J],
+        /// -d change/dx, decimetres.
+        arm: [[S; ORDER]; J],
+        /// d arm/dx, decimetres.
+        slope: [[S; ORDER]; J],
+        /// Coefficient of x_1 x_2, decimetres.
+        product: S,
+        /// Decimetres to path lengths.
+        unit: S::Factor,
+        /// 0.1 m over the half range: decimetres per x to m/rad.
+        per_angle: [S::Factor; J],
+        /// The same over the half range once more.
+        per_angle_squared: [S::Factor; J],
+    }
 }
-
-summed!([S: Scalar, const J: usize] Path<S, J> { middle, change, arm, slope, product, unit, per_angle, per_angle_squared });
 
 /// A muscle in a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,10 +4,10 @@
 //! saturated in the direction that the error would push it further (conditional integration), and
 //! never exceeds its limit.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -59,20 +59,20 @@ impl Saturated {
     }
 }
 
-/// Feedback.
-#[derive(Clone, Copy, Debug)]
-pub struct Pi<S: Scalar> {
-    proportional: S,
-    /// k_i/256 and 256 time steps: the product of a share and a number.
-    integral: S,
-    share: S::Share,
-    most: S,
-    /// k_d/T_d.
-    derivative: S,
-    filter: Lag<S>,
+summed! {
+    /// Feedback.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Pi<S: Scalar> {
+        proportional: S,
+        /// k_i/256 and 256 time steps: the product of a share and a number.
+        integral: S,
+        share: S::Share,
+        most: S,
+        /// k_d/T_d.
+        derivative: S,
+        filter: Lag<S>,
+    }
 }
-
-summed!([S: Scalar] Pi<S> { proportional, integral, share, most, derivative, filter });
 
 /// State of the feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::joint::{Joint, JointError, JointMuscle, JointStatus, TORQUE_UNIT};
 use super::limit::{CommandLimits, Limited, Limiter};
 use super::path::{AngleRange, PathParams};
 use super::saved::{Parts, fingerprint};
-use crate::checksum::{Checksum, Summed, summed};
+use crate::checksum::Checksum;
 use crate::error::ParameterError;
 use crate::io::Input;
 use crate::muscle::ContinuousMuscle;
@@ -19,6 +19,7 @@ use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::status::Status;
+use crate::summed::{Summed, summed};
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
@@ -86,20 +87,20 @@ pub struct ProsthesisCommand<S: Scalar> {
     pub status: ProsthesisStatus,
 }
 
-/// A prosthesis with delay lines of `D` ticks.
-#[derive(Clone, Copy, Debug)]
-pub struct Prosthesis<S: Scalar, const N: usize, const D: usize> {
-    range: Range<S>,
-    joint: Joint<S, 1, 2>,
-    muscles: [ContinuousMuscle<S, N>; 2],
-    envelopes: [Envelope<S, D>; 2],
-    torque: Limiter<S>,
-    stiffness: Limiter<S>,
-    /// A frequency, which natural recruitment does not use.
-    none: S::Quantity,
+summed! {
+    /// A prosthesis with delay lines of `D` ticks.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Prosthesis<S: Scalar, const N: usize, const D: usize> {
+        range: Range<S>,
+        joint: Joint<S, 1, 2>,
+        muscles: [ContinuousMuscle<S, N>; 2],
+        envelopes: [Envelope<S, D>; 2],
+        torque: Limiter<S>,
+        stiffness: Limiter<S>,
+        /// A frequency, which natural recruitment does not use.
+        none: S::Quantity,
+    }
 }
-
-summed!([S: Scalar, const N: usize, const D: usize] Prosthesis<S, N, D> { range, joint, muscles, envelopes, torque, stiffness, none });
 
 /// Everything of a prosthesis that changes from tick to tick.
 #[derive(Clone, Copy, Debug, PartialEq)]

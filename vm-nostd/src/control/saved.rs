@@ -1,8 +1,9 @@
 //! Saved states that are made of several parts.
 
-use crate::checksum::{Checksum, Summed};
+use crate::checksum::Checksum;
 use crate::saved::RestoreError;
 use crate::scalar::Scalar;
+use crate::summed::Summed;
 
 /// Fingerprint of what a state belongs to: a number for its kind, its arithmetic and coefficients.
 pub(super) fn fingerprint<S: Scalar, T: Summed>(kind: u32, of: &T) -> u32 {

@@ -1,9 +1,9 @@
 //! Activation-frequency relation: Af = 1 - exp(-(Y S f/(af n_f))^n_f),
 //! n_f = nf0 + nf1 (1/L - 1).
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use core::array::from_fn;
 
 /// Coefficients of Af.
@@ -50,15 +50,15 @@ impl ActivationParams {
     }
 }
 
-/// Af of one fibre type.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ActivationFrequency<S> {
-    /// nf0 - nf1 and nf1.
-    exponent: [S; 2],
-    scale: S,
+summed! {
+    /// Af of one fibre type.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct ActivationFrequency<S> {
+        /// nf0 - nf1 and nf1.
+        exponent: [S; 2],
+        scale: S,
+    }
 }
-
-summed!([S: Scalar] ActivationFrequency<S> { exponent, scale });
 
 /// Af as a function of frequency at one fascicle length.
 #[derive(Clone, Copy, Debug)]

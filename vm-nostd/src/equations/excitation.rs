@@ -3,10 +3,10 @@
 //!
 //! Rising (f_int >= f_eff): Tf = Tf1 L² + Tf2 f_env; falling: Tf = (Tf3 + Tf4 Af)/L.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::cold::cold_path;
 use crate::scalar::{Lags, Scalar};
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 use core::array::from_fn;
 
@@ -37,19 +37,19 @@ impl ExcitationParams {
     }
 }
 
-/// The two lags of one fibre type.
-#[derive(Clone, Copy, Debug)]
-pub struct Excitation<S: Scalar> {
-    /// A tick, in the unit of the time constants, which is 2^k ticks.
-    tick: S,
-    // Time constants, in that unit.
-    rise: S,
-    rise_per_frequency: S,
-    fall: S,
-    fall_per_activation: S,
+summed! {
+    /// The two lags of one fibre type.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Excitation<S: Scalar> {
+        /// A tick, in the unit of the time constants, which is 2^k ticks.
+        tick: S,
+        // Time constants, in that unit.
+        rise: S,
+        rise_per_frequency: S,
+        fall: S,
+        fall_per_activation: S,
+    }
 }
-
-summed!([S: Scalar] Excitation<S> { tick, rise, rise_per_frequency, fall, fall_per_activation });
 
 /// The two lags after a tick.
 #[derive(Clone, Copy, Debug)]

@@ -4,10 +4,10 @@
 //! rest, rho ln((L^beta - 1)/((L - 1) omega)), is approximated by a polynomial in L - 1. All types
 //! share one logarithm and one reciprocal, and no power of L is computed in a tick.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::summed::summed;
 use core::array::from_fn;
 
 /// Coefficients of FL.
@@ -33,6 +33,8 @@ impl ForceLengthParams {
     }
 }
 
+/// Largest sum of the magnitudes of the polynomial's terms in fixed point.
+const MOST: f64 = 100.0;
 /// Number of terms of the polynomial. The error of FL is below 2e-6 for published types and below
 /// 1.2e-4 for all valid ones.
 const TERMS: usize = 8;
@@ -90,13 +92,13 @@ impl ForceLengthParams {
 /// has a cusp. At this bound FL is within 1e-4 of 1, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
 
-/// The optimal length, 1 L_ce0.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OptimalLength<S> {
-    nearest: S,
+summed! {
+    /// The optimal length, 1 L_ce0.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct OptimalLength<S> {
+        nearest: S,
+    }
 }
-
-summed!([S: Scalar] OptimalLength<S> { nearest });
 
 /// Distance of the fascicles from their optimal length.
 #[derive(Clone, Copy, Debug)]
@@ -119,15 +121,20 @@ impl<S: Scalar> OptimalLength<S> {
     }
 }
 
-/// FL of one fibre type.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ForceLength<S: Scalar> {
-    roundness: S,
-    /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first.
-    smooth: [S; TERMS],
-}
+summed! {
+    /// FL of one fibre type.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct ForceLength<S: Scalar> {
+        roundness: S,
+        /// Coefficients of rho ln((L^beta - 1)/((L - 1) omega)) in powers of L - 1, constant first.
+        smooth: [S; TERMS],
+    }
 
-summed!([S: Scalar] ForceLength<S> { roundness, smooth });
+    valid: |relation| {
+        let sum = relation.smooth.iter().fold(S::ZERO, |sum, term| sum + term.abs());
+        S::LARGEST_COEFFICIENT > MOST || sum <= S::from_f64(MOST)
+    }
+}
 
 impl<S: Scalar> ForceLength<S> {
     /// FL for fascicle lengths in a range (L_ce0).

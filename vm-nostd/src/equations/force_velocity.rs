@@ -5,9 +5,9 @@
 //!
 //! Both are (1 + n V)/(1 + d V) = 1 + (n - d) V/(1 + d V), with n and d chosen by the sign of V.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::course::Course;
 
 /// Coefficients of FV.
@@ -100,19 +100,19 @@ impl ForceVelocityParams {
     }
 }
 
-/// FV of one fibre type.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ForceVelocity<S> {
-    maximum_velocity: S,
-    /// -1/Vmax, and cV0/Vmax, cV1/Vmax.
-    per_maximum: S,
-    shortening: [S; 2],
-    /// 1/bV and -aV0/bV, -aV1/bV, -aV2/bV.
-    per_lengthening: S,
-    lengthening: [S; 3],
+summed! {
+    /// FV of one fibre type.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct ForceVelocity<S> {
+        maximum_velocity: S,
+        /// -1/Vmax, and cV0/Vmax, cV1/Vmax.
+        per_maximum: S,
+        shortening: [S; 2],
+        /// 1/bV and -aV0/bV, -aV1/bV, -aV2/bV.
+        per_lengthening: S,
+        lengthening: [S; 3],
+    }
 }
-
-summed!([S: Scalar] ForceVelocity<S> { maximum_velocity, per_maximum, shortening, per_lengthening, lengthening });
 
 impl<S: Scalar> ForceVelocity<S> {
     pub(crate) fn new(params: &ForceVelocityParams) -> Self {

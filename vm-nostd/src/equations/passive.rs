@@ -1,10 +1,10 @@
 //! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick
 //! filaments.
 
-use crate::checksum::summed;
 use crate::equations::tendon::softplus_inverse;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
 /// Coefficients of F_pe1 = c1 k1 ln(exp((L/L_max - Lr1)/k1) + 1) + eta V.
@@ -79,20 +79,20 @@ impl CompressionParams {
     }
 }
 
-/// The elastic part of F_pe1 for one muscle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Parallel<S: Scalar> {
-    /// Lr1 L_max, L_ce0.
-    slack_length: S,
-    /// 1/(L_max k1).
-    per_toe: S::Factor,
-    /// c1 k1, F0.
-    force: S::Factor,
-    /// c1/L_max times the time step, F0 per L_ce0/s and tick.
-    stiffness: S::Factor,
+summed! {
+    /// The elastic part of F_pe1 for one muscle.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Parallel<S: Scalar> {
+        /// Lr1 L_max, L_ce0.
+        slack_length: S,
+        /// 1/(L_max k1).
+        per_toe: S::Factor,
+        /// c1 k1, F0.
+        force: S::Factor,
+        /// c1/L_max times the time step, F0 per L_ce0/s and tick.
+        stiffness: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Parallel<S> { slack_length, per_toe, force, stiffness });
 
 impl<S: Scalar> Parallel<S> {
     pub(crate) fn new(
@@ -116,22 +116,22 @@ impl<S: Scalar> Parallel<S> {
     }
 }
 
-/// F_pe2, shared by the fibre types and weighted by their activation.
-///
-/// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), so that no term is large.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Compression<S: Scalar> {
-    /// |c2|, F0.
-    strength: S,
-    /// k2.
-    steepness: S::Factor,
-    /// Length at which the exponential is 1, L_ce0.
-    unit_length: S,
-    /// -k2 times the time step, per L_ce0/s and tick.
-    slope: S::Factor,
+summed! {
+    /// F_pe2, shared by the fibre types and weighted by their activation.
+    ///
+    /// Computed as |c2| - exp(k2 (L - Lr2) + ln |c2|), so that no term is large.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Compression<S: Scalar> {
+        /// |c2|, F0.
+        strength: S,
+        /// k2.
+        steepness: S::Factor,
+        /// Length at which the exponential is 1, L_ce0.
+        unit_length: S,
+        /// -k2 times the time step, per L_ce0/s and tick.
+        slope: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Compression<S> { strength, steepness, unit_length, slope });
 
 /// Lower bound of |c2| in its logarithm, F0; negligible as a force.
 const NO_STRENGTH: f64 = 1e-9;

@@ -1,9 +1,9 @@
 //! Sag of fast fibres: dS/dt = (aS - S)/TS, aS = aS1 below f = 0.1 f0.5, else aS2.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::cold::cold_path;
+use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -34,15 +34,15 @@ impl SagParams {
     }
 }
 
-/// Sag of one fibre type; S is 1 for a type without sag.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sag<S: Scalar> {
-    pub(crate) resting_level: S,
-    firing_level: S,
-    lag: Lag<S>,
+summed! {
+    /// Sag of one fibre type; S is 1 for a type without sag.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Sag<S: Scalar> {
+        pub(crate) resting_level: S,
+        firing_level: S,
+        lag: Lag<S>,
+    }
 }
-
-summed!([S: Scalar] Sag<S> { resting_level, firing_level, lag });
 
 impl<S: Scalar> Sag<S> {
     pub(crate) fn new(params: Option<&SagParams>, step: TimeStep) -> Self {

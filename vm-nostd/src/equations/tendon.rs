@@ -1,9 +1,9 @@
 //! Tendon and aponeurosis: F_se = cT kT ln(exp((L_se - LrT)/kT) + 1).
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
 /// Coefficients of the series elastic element.
@@ -44,22 +44,22 @@ pub(crate) fn softplus_inverse(x: f64) -> f64 {
     x + Scalar::ln(one_minus_exp(x))
 }
 
-/// Tendon of one muscle. Extensions beyond slack are in L_ce0, like fascicle lengths.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tendon<S: Scalar> {
-    /// LrT L_se0: the slack length, m.
-    slack_path: S::PathLength,
-    /// 1/L_ce0, per m.
-    per_path: S::Factor,
-    /// L_ce0/(kT L_se0).
-    per_toe: S::Factor,
-    /// cT kT, F0.
-    force: S::Factor,
-    /// cT L_ce0/L_se0 times the time step, F0 per L_ce0/s and tick.
-    stiffness: S::Factor,
+summed! {
+    /// Tendon of one muscle. Extensions beyond slack are in L_ce0, like fascicle lengths.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Tendon<S: Scalar> {
+        /// LrT L_se0: the slack length, m.
+        slack_path: S::PathLength,
+        /// 1/L_ce0, per m.
+        per_path: S::Factor,
+        /// L_ce0/(kT L_se0).
+        per_toe: S::Factor,
+        /// cT kT, F0.
+        force: S::Factor,
+        /// cT L_ce0/L_se0 times the time step, F0 per L_ce0/s and tick.
+        stiffness: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Tendon<S> { slack_path, per_path, per_toe, force, stiffness });
 
 /// Tendon force and stiffness at an extension.
 #[derive(Clone, Copy, Debug)]
@@ -74,16 +74,16 @@ pub(crate) struct Pull<S: Scalar> {
     pub(crate) saturated: bool,
 }
 
-/// Inverse of F_se: extension = kT (x + ln(1 - exp(-x))), x = F_se/(cT kT).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TendonInverse<S: Scalar> {
-    /// 1/(cT kT), per F0.
-    per_force: S::Factor,
-    /// kT L_se0/L_ce0.
-    toe: S::Factor,
+summed! {
+    /// Inverse of F_se: extension = kT (x + ln(1 - exp(-x))), x = F_se/(cT kT).
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct TendonInverse<S: Scalar> {
+        /// 1/(cT kT), per F0.
+        per_force: S::Factor,
+        /// kT L_se0/L_ce0.
+        toe: S::Factor,
+    }
 }
-
-summed!([S: Scalar] TendonInverse<S> { per_force, toe });
 
 impl<S: Scalar> TendonInverse<S> {
     pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {

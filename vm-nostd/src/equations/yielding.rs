@@ -1,10 +1,10 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
-use crate::checksum::summed;
 use crate::error::{ParameterError, within};
 use crate::params::limits::MAXIMUM_SPEED;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -60,18 +60,18 @@ impl<S: Scalar> Speed<S> {
     }
 }
 
-/// Yield of one fibre type; Y is 1 for a type without yield.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Yielding<S: Scalar> {
-    depth: S,
-    /// 1/VY.
-    per_velocity: S::Factor,
-    /// Half the unit of the variance of speed, over VY².
-    per_spread: S::Factor,
-    lag: Lag<S>,
+summed! {
+    /// Yield of one fibre type; Y is 1 for a type without yield.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Yielding<S: Scalar> {
+        depth: S,
+        /// 1/VY.
+        per_velocity: S::Factor,
+        /// Half the unit of the variance of speed, over VY².
+        per_spread: S::Factor,
+        lag: Lag<S>,
+    }
 }
-
-summed!([S: Scalar] Yielding<S> { depth, per_velocity, per_spread, lag });
 
 impl<S: Scalar> Yielding<S> {
     pub(crate) fn new(params: Option<&YieldParams>, step: TimeStep) -> Self {

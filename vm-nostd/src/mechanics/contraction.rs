@@ -16,7 +16,6 @@
 
 use super::decay;
 use super::elementwise::{sum, zip};
-use crate::checksum::summed;
 use crate::equations::force_velocity::{Branch, VelocityCurve};
 use crate::equations::tendon::Tendon;
 use crate::equations::yielding::{SPREAD, Speed};
@@ -28,7 +27,9 @@ use crate::recruitment::RecruitmentTick;
 use crate::scalar::Scalar;
 use crate::scalar::cold::cold_path;
 use crate::scalar::float::{square_root, tangent};
+use crate::summed::summed;
 use crate::tick::course::Course;
+use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
 /// Ticks at least this long have the coarse maximum substep, s: 1 ms less a rounding tolerance.
@@ -82,45 +83,56 @@ pub(crate) struct Contractile<'a, S: Scalar, const N: usize> {
     pub(crate) passive_slope: S,
 }
 
-/// Coefficients of the mechanics.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Contraction<S: Scalar> {
-    pub(crate) tendon: Tendon<S>,
-    /// eta, F0 s/L_ce0.
-    viscosity: S,
-    substep: Substep<S>,
-    /// Number of substeps in a tick.
-    substeps: u8,
-    /// A tick, s.
-    tick: S::Part,
-    /// Ticks per second.
-    tick_rate: S::Factor,
-    /// Largest speed, L_ce0/s.
-    speed: S,
-    /// V_max of the slowest type, L_ce0/s.
-    slowest: S,
-    /// Reciprocal of the unit of the variance of speed.
-    per_spread: S::Part,
-    settled: S,
-    least_steepness: S,
+summed! {
+    /// Coefficients of the mechanics.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Contraction<S: Scalar> {
+        pub(crate) tendon: Tendon<S>,
+        /// eta, F0 s/L_ce0.
+        viscosity: S,
+        substep: Substep<S>,
+        /// Number of substeps in a tick.
+        substeps: u8,
+        /// A tick, s.
+        tick: S::Part,
+        /// Ticks per second.
+        tick_rate: S::Factor,
+        /// Largest speed, L_ce0/s.
+        speed: S,
+        /// V_max of the slowest type, L_ce0/s.
+        slowest: S,
+        /// Reciprocal of the unit of the variance of speed.
+        per_spread: S::Part,
+        settled: S,
+        least_steepness: S,
+    }
+
+    valid: |contraction| {
+        let positive = [contraction.viscosity, contraction.speed, contraction.least_steepness];
+        (1..=MOST_SUBSTEPS).contains(&contraction.substeps)
+            && positive.into_iter().all(|value| value > S::ZERO)
+    }
 }
 
-summed!([S: Scalar] Contraction<S> { tendon, viscosity, substep, substeps, tick, tick_rate, speed, slowest, per_spread, settled, least_steepness });
+summed! {
+    /// Coefficients of a substep of a given length.
+    #[derive(Clone, Copy, Debug)]
+    struct Substep<S: Scalar> {
+        /// Half a substep, in ticks.
+        half: S::Part,
+        /// Mass over half the substep, F0 s/L_ce0.
+        inertia: S,
+        /// Reduction of the inertia on a taut tendon, F0 s/L_ce0.
+        fitted: S,
+        /// Stiffness of the taut tendon times half the substep, F0 s/L_ce0.
+        taut: S,
+    }
 
-/// Coefficients of a substep of a given length.
-#[derive(Clone, Copy, Debug)]
-struct Substep<S: Scalar> {
-    /// Half a substep, in ticks.
-    half: S::Part,
-    /// Mass over half the substep, F0 s/L_ce0.
-    inertia: S,
-    /// Reduction of the inertia on a taut tendon, F0 s/L_ce0.
-    fitted: S,
-    /// Stiffness of the taut tendon times half the substep, F0 s/L_ce0.
-    taut: S,
+    valid: |substep| {
+        let share = Range { least: S::ZERO, most: substep.inertia };
+        substep.inertia > S::ZERO && share.contains(substep.fitted) && substep.taut > S::ZERO
+    }
 }
-
-summed!([S: Scalar] Substep<S> { half, inertia, fitted, taut });
 
 impl<S: Scalar> Substep<S> {
     /// A substep of `seconds`, for a mass in F0 s²/L_ce0 on a taut tendon in F0/L_ce0.

@@ -4,10 +4,10 @@
 //! dL_eff/dt = (L - L_eff)³/(T_L (1 - Af)), L_eff = 1 at rest.
 
 use super::mode::Moment;
-use crate::checksum::{Summed, summed};
 use crate::params::FiberType;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::summed::{FromWords, summed};
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 use core::fmt::Debug;
@@ -26,7 +26,7 @@ pub struct EffectiveLength;
 pub trait ActingLength<S: Scalar>: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// State of the length.
     type State: Copy + Debug + PartialEq + Send + Sync;
-    type Coefficients: Copy + Debug + Summed + Send + Sync;
+    type Coefficients: Copy + Debug + FromWords + Send + Sync;
     const WORDS: usize;
     /// Mode number of discrete recruitment with this length.
     const MODE: u32;
@@ -75,17 +75,17 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
 /// Lower bound of 1 - Af, a divisor. Near Af = 1, n_f has hardly any effect on Af.
 const LEAST_INACTIVE: f64 = 1e-4;
 
-/// Coefficients of the effective length.
-#[derive(Clone, Copy, Debug)]
-pub struct EffectiveLengthCoefficients<S: Scalar> {
-    /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, x = L - L_eff.
-    rate: S,
-    least_inactive: S,
-    /// Range of L_eff, in which n_f is defined.
-    range: Range<S>,
+summed! {
+    /// Coefficients of the effective length.
+    #[derive(Clone, Copy, Debug)]
+    pub struct EffectiveLengthCoefficients<S: Scalar> {
+        /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, x = L - L_eff.
+        rate: S,
+        least_inactive: S,
+        /// Range of L_eff, in which n_f is defined.
+        range: Range<S>,
+    }
 }
-
-summed!([S: Scalar] EffectiveLengthCoefficients<S> { rate, least_inactive, range });
 
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
     type State = S::LagState;

@@ -10,13 +10,13 @@
 use super::firing::Firing;
 use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use crate::checksum::summed;
 use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
+use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
@@ -41,16 +41,16 @@ const FIRST_THRESHOLD: f64 = 0.001;
 const RISE_TIME: f64 = 0.03;
 const FALL_TIME: f64 = 0.15;
 
-#[derive(Clone, Copy, Debug)]
-pub struct Coefficients<S: Scalar, const N: usize> {
-    rise: Lag<S>,
-    fall: Lag<S>,
-    /// Frequency above which a type counts as firing, f0.5.
-    firing: S,
-    units: [Firing<S>; N],
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    pub struct Coefficients<S: Scalar, const N: usize> {
+        rise: Lag<S>,
+        fall: Lag<S>,
+        /// Frequency above which a type counts as firing, f0.5.
+        firing: S,
+        units: [Firing<S>; N],
+    }
 }
-
-summed!([S: Scalar, const N: usize] Coefficients<S, N> { rise, fall, firing, units });
 
 impl<S: Scalar, const N: usize> Coefficients<S, N> {
     /// Steady-state weight U_eff W_i and firing frequency (f0.5) of each type at an activation.

@@ -9,7 +9,6 @@ use super::firing::Firing;
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentState, RecruitmentTick};
 use super::motor_units::MotorUnits;
 use super::unit::{Activity, advance_sag};
-use crate::checksum::{Summed, summed};
 use crate::equations::activation_frequency;
 use crate::equations::excitation::{self, ExcitationInput};
 use crate::equations::sag::{SagParams, share_above};
@@ -18,6 +17,7 @@ use crate::fiber::Fiber;
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
+use crate::summed::summed;
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
 use core::marker::PhantomData;
@@ -39,28 +39,30 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
     type Coefficients = Coefficients<S, A, UNITS>;
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
-    /// Frequency above which a unit counts as firing, f0.5.
-    firing: S,
-    units: [Unit<S, A::Coefficients>; UNITS],
-    /// Number of units.
-    count: usize,
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
+        /// Frequency above which a unit counts as firing, f0.5.
+        firing: S,
+        units: [Unit<S, A::Coefficients>; UNITS],
+        /// Number of units.
+        count: usize,
+    }
+
+    valid: |coefficients| (1..=UNITS).contains(&coefficients.count)
 }
 
-summed!([S: Scalar, A: ActingLength<S>, const UNITS: usize] Coefficients<S, A, UNITS> { firing, units, count });
-
-#[derive(Clone, Copy, Debug)]
-struct Unit<S: Scalar, L> {
-    /// Index of its fibre type.
-    fiber: usize,
-    /// Cross section, as a share of the muscle.
-    share: S,
-    firing: Firing<S>,
-    acting_length: L,
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    struct Unit<S: Scalar, L> {
+        /// Index of its fibre type.
+        fiber: usize,
+        /// Cross section, as a share of the muscle.
+        share: S,
+        firing: Firing<S>,
+        acting_length: L,
+    }
 }
-
-summed!([S: Scalar, L: Summed] Unit<S, L> { fiber, share, firing, acting_length });
 
 /// State of the motor units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +117,10 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         let mut all = [first; UNITS];
         all.iter_mut().skip(1).zip(coefficients).for_each(|(place, unit)| *place = unit);
         Ok(Self { firing: S::from_f64(SagParams::FIRING), units: all, count: units.count() })
+    }
+
+    fn fits(&self) -> bool {
+        self.units.iter().all(|unit| unit.fiber < N)
     }
 
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {

@@ -7,7 +7,6 @@
 
 use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use crate::checksum::summed;
 use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
@@ -15,6 +14,7 @@ use crate::params::MuscleParams;
 use crate::params::limits::MAXIMUM_STIMULATION_FREQUENCY;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
+use crate::summed::summed;
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
 use core::array::from_fn;
@@ -33,23 +33,23 @@ impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
     type Coefficients = Coefficients<S, N>;
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct Coefficients<S: Scalar, const N: usize> {
-    /// f_env above which a type counts as firing, f0.5.
-    firing: S,
-    units: [Unit<S>; N],
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    pub struct Coefficients<S: Scalar, const N: usize> {
+        /// f_env above which a type counts as firing, f0.5.
+        firing: S,
+        units: [Unit<S>; N],
+    }
 }
 
-summed!([S: Scalar, const N: usize] Coefficients<S, N> { firing, units });
-
-#[derive(Clone, Copy, Debug)]
-struct Unit<S: Scalar> {
-    fraction: S,
-    /// 1/f0.5, s.
-    per_half_force_frequency: S::Factor,
+summed! {
+    #[derive(Clone, Copy, Debug)]
+    struct Unit<S: Scalar> {
+        fraction: S,
+        /// 1/f0.5, s.
+        per_half_force_frequency: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Unit<S> { fraction, per_half_force_frequency });
 
 impl<S: Scalar, const N: usize> Coefficients<S, N> {
     /// Recruited cross section of each type, as a share of the muscle.

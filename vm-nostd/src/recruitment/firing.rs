@@ -1,21 +1,21 @@
 //! Firing frequency in natural recruitment: f_env rises linearly with activation U from fmin at the
 //! threshold Uth to fmax at U = 1; below Uth it is 0.
 
-use crate::checksum::summed;
 use crate::params::FiberType;
 use crate::scalar::Scalar;
+use crate::summed::summed;
 
-/// Firing of one unit.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Firing<S: Scalar> {
-    /// Uth.
-    pub(super) threshold: S,
-    maximum_frequency: S,
-    /// (fmax - fmin)/(1 - Uth).
-    slope: S::Factor,
+summed! {
+    /// Firing of one unit.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Firing<S: Scalar> {
+        /// Uth.
+        pub(super) threshold: S,
+        maximum_frequency: S,
+        /// (fmax - fmin)/(1 - Uth).
+        slope: S::Factor,
+    }
 }
-
-summed!([S: Scalar] Firing<S> { threshold, maximum_frequency, slope });
 
 /// Lower bound of 1 - Uth, for units that are recruited at U = 1 only.
 const LEAST_RANGE: f64 = 1e-6;

@@ -1,12 +1,12 @@
 //! Traits of a recruitment mode.
 
-use crate::checksum::Summed;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::io::Input;
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::{Scalar, sealed::Sealed};
+use crate::summed::FromWords;
 use crate::tick::time_step::TimeStep;
 use core::fmt::Debug;
 
@@ -23,7 +23,7 @@ pub trait Recruitment<S: Scalar, const N: usize>:
     type State: RecruitmentState<S>;
     #[doc(hidden)]
     type Coefficients: RecruitmentTick<S, N, Units = Self::Units, State = Self::State>
-        + Summed
+        + FromWords
         + Send
         + Sync;
 }
@@ -53,6 +53,11 @@ pub trait RecruitmentTick<S: Scalar, const N: usize>: Sized {
         units: &Self::Units,
         step: TimeStep,
     ) -> Result<Self, ParameterError>;
+
+    /// Whether coefficients that were read are of `N` fibre types.
+    fn fits(&self) -> bool {
+        true
+    }
 
     /// The state at rest.
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State;

@@ -23,7 +23,7 @@ pub use unit::Unit;
 
 use super::sealed::Sealed;
 use super::{Balance, Lags, Scalar};
-use crate::checksum::{Checksum, Summed};
+use crate::summed::summed_numbers;
 use factor::nearest;
 use fixed::types::{I16F16, I23F9};
 use number::ONE;
@@ -37,19 +37,14 @@ const LAG_SHIFT: u32 = 32;
 
 impl Sealed for Fixed {}
 
-/// Implements [`Summed`] for 32-bit numbers.
-macro_rules! summed_bits {
-    ($($number:ty),*) => {
-        $(impl Summed for $number {
-            #[inline]
-            fn sum(&self, checksum: &mut Checksum) {
-                self.to_bits().sum(checksum);
-            }
-        })*
-    };
+summed_numbers! {
+    Fixed: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
+    I16F16: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
+    I23F9: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
 }
-
-summed_bits!(Fixed, I16F16, I23F9);
 
 impl Scalar for Fixed {
     type Bits = u32;

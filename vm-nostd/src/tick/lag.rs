@@ -1,18 +1,26 @@
 //! A first-order lag towards a target that is constant during a tick.
 
-use crate::checksum::summed;
 use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
-/// Exact solution of `dy/dt = (target - y)/T` over half a tick and over a tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lag<S: Scalar> {
-    half: S::Share,
-    whole: S::Share,
+summed! {
+    /// Exact solution of `dy/dt = (target - y)/T` over half a tick and over a tick.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Lag<S: Scalar> {
+        half: S::Share,
+        whole: S::Share,
+    }
+
+    valid: |lag| [lag.half, lag.whole].into_iter().all(is_share::<S>)
 }
 
-summed!([S: Scalar] Lag<S> { half, whole });
+/// Whether a share is from 0 to 1.
+fn is_share<S: Scalar>(share: S::Share) -> bool {
+    let moved = S::of(S::advanced(S::ZERO.lag_state(), S::ONE, share));
+    moved >= S::ZERO && moved <= S::ONE
+}
 
 impl<S: Scalar> Lag<S> {
     /// A lag of `time_constant` s.

@@ -1,18 +1,20 @@
 //! A closed range.
 
-use crate::checksum::{Summed, summed};
 use crate::scalar::Scalar;
+use crate::summed::summed;
 use core::ops::Add;
 
-/// A closed range.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub struct Range<S> {
-    pub(crate) least: S,
-    pub(crate) most: S,
-}
+summed! {
+    /// A closed range.
+    #[derive(Clone, Copy, Debug)]
+    #[doc(hidden)]
+    pub struct Range<S> {
+        pub(crate) least: S,
+        pub(crate) most: S,
+    }
 
-summed!([S: Summed] Range<S> { least, most });
+    valid: |range| range.least <= range.most, where S: PartialOrd
+}
 
 impl<T: Copy + PartialOrd> Range<T> {
     pub(crate) fn new((least, most): (f64, f64), nearest: impl Fn(f64) -> T) -> Self {

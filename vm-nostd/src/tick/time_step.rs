@@ -16,9 +16,11 @@ impl TimeStep {
 
     /// A step of `seconds`; an error outside [`SHORTEST`](Self::SHORTEST) to
     /// [`LONGEST`](Self::LONGEST).
-    pub fn from_seconds(seconds: f64) -> Result<Self, ParameterError> {
-        within("time_step", seconds, Self::SHORTEST, Self::LONGEST)?;
-        Ok(Self(seconds))
+    pub const fn from_seconds(seconds: f64) -> Result<Self, ParameterError> {
+        match within("time_step", seconds, Self::SHORTEST, Self::LONGEST) {
+            Ok(()) => Ok(Self(seconds)),
+            Err(error) => Err(error),
+        }
     }
 
     /// The step in s.

@@ -1,18 +1,23 @@
 //! Constant factors of any magnitude.
 
 use super::number::{exact, saturating_shift};
-use crate::checksum::summed;
+use crate::summed::summed;
 
-/// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer multiples of
-/// their ULP ("units").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Factor {
-    mantissa: i32,
-    /// 1 to 62.
-    shift: u8,
+summed! {
+    /// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer multiples of
+    /// their ULP ("units").
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Factor {
+        mantissa: i32,
+        /// 1 to 62.
+        shift: u8,
+    }
+
+    valid: |factor| (1..=LARGEST_SHIFT).contains(&factor.shift)
 }
 
-summed!([] Factor { mantissa, shift });
+/// Largest shift of a factor.
+const LARGEST_SHIFT: u8 = 62;
 
 impl Factor {
     /// The nearest factor. The mantissa has 31 bits for factors of at least 2^-32, fewer below.
@@ -23,7 +28,7 @@ impl Factor {
             mantissa *= 0.5;
             shift -= 1;
         }
-        while mantissa.abs() < TWO_30 && shift < 62 {
+        while mantissa.abs() < TWO_30 && shift < LARGEST_SHIFT {
             mantissa *= 2.0;
             shift += 1;
         }

@@ -3,17 +3,15 @@
 use super::factor::nearest;
 use super::number::high;
 use super::product;
-use crate::checksum::{Checksum, Summed};
+use crate::summed::summed_numbers;
 use core::ops::Add;
 
 /// A number from -1/2 to 1/2 in Q0.32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part(i32);
 
-impl Summed for Part {
-    fn sum(&self, checksum: &mut Checksum) {
-        self.0.sum(checksum);
-    }
+summed_numbers! {
+    Part: |part| part.0.cast_unsigned(), |word| Some(Self(word.cast_signed()));
 }
 
 impl Part {
