@@ -1,6 +1,8 @@
 /* Misuse of every arithmetic, and the name of every field that is refused. */
 
 #include "check.h"
+#include "words_f32.h"
+#include "words_fixed.h"
 
 #define A(name) name##_f32
 #define F(name) vm_f32_##name
@@ -17,6 +19,9 @@
 #define BEYOND {1.5f, 0.16f, 20.0f}
 #define STATE_WORDS VM_F32_STATE_WORDS
 #define OTHER(name) vm_fixed_##name
+#define WORDS deltoid_posterior_fes_f32_words
+#define READ deltoid_posterior_fes_f32
+#define OTHER_WORDS deltoid_posterior_fes_fixed_words
 #include "misuse_rows.h"
 #undef A
 #undef F
@@ -32,6 +37,9 @@
 #undef BEYOND
 #undef STATE_WORDS
 #undef OTHER
+#undef WORDS
+#undef READ
+#undef OTHER_WORDS
 
 #define A(name) name##_fixed
 #define F(name) vm_fixed_##name
@@ -47,6 +55,9 @@
 #define BEYOND {160000, 1500, 200}
 #define STATE_WORDS VM_FIXED_STATE_WORDS
 #define OTHER(name) vm_f32_##name
+#define WORDS deltoid_posterior_fes_fixed_words
+#define READ deltoid_posterior_fes_fixed
+#define OTHER_WORDS deltoid_posterior_fes_f32_words
 #include "misuse_rows.h"
 
 /* Fields of doubles. */

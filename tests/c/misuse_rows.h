@@ -178,6 +178,76 @@ static int A(misuse)(void) {
     REFUSED(PARAMETER, F(build)(muscle, size, &bad, VM_MODE_FES, 1e-3, 0));
     REFUSED(OK, F(step)(muscle, &input, &output));
 
+    /* Words: a muscle from them has the bits of a built one. */
+    {
+        uint32_t copy[sizeof WORDS / sizeof WORDS[0] + 1], read, stepped;
+        const size_t count = sizeof WORDS / sizeof WORDS[0];
+#define TAKE(words, count, types, mode, class, tick)                                                                  \
+    F(from_words)(muscle, size, words, count, types, mode, class, tick, &error)
+#define DIFFERS(name, found, wanted)                                                                                  \
+    CHECK(equal(error.field, "words: " name) && error.value == (found) && error.least == (wanted) &&                  \
+          error.most == (wanted) && error.fiber == -1)
+        REFUSED(OK, F(build)(muscle, size, &params, VM_MODE_FES, 1e-3, 0));
+        REFUSED(OK, F(rest)(muscle, PATH));
+        for (index = 0; index < 300; index++) REFUSED(OK, F(step)(muscle, &input, &output));
+        REFUSED(OK, F(checksums)(muscle, &coefficients, &state));
+        REFUSED(OK, READ(muscle, size, &error));
+        REFUSED(NOT_RESTED, F(step)(muscle, &input, &output));
+        REFUSED(OK, F(rest)(muscle, PATH));
+        for (index = 0; index < 300; index++) REFUSED(OK, F(step)(muscle, &input, &output));
+        REFUSED(OK, F(checksums)(muscle, &read, &stepped));
+        CHECK(read == coefficients && stepped == state && output.relative_force > 0);
+        REFUSED(OK, F(info)(muscle, &info));
+        CHECK(info.mode == VM_MODE_FES && info.accuracy_class == VM_CLASS_STANDARD && info.fiber_count == 2);
+        /* What is refused leaves the muscle that was there. */
+        for (index = 0; index < count; index++) copy[index] = WORDS[index];
+        copy[count] = 0;
+        REFUSED(NULL_POINTER, F(from_words)(0, size, WORDS, count, 2, VM_MODE_FES, 0, 1e-3, &error));
+        REFUSED(NULL_POINTER, TAKE(0, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        REFUSED(ALIGNMENT, TAKE(CROOKED(uint32_t, copy), count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        REFUSED(ALIGNMENT, F(from_words)(odd, size, WORDS, count, 2, VM_MODE_FES, 0, 1e-3, &error));
+        REFUSED(ALIGNMENT,
+                F(from_words)(muscle, size, WORDS, count, 2, VM_MODE_FES, 0, 1e-3, CROOKED(VmError, &error)));
+        REFUSED(SIZE, F(from_words)(muscle, 8, WORDS, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3, &error));
+        CHECK(equal(error.field, "size") && error.value == 8.0);
+        REFUSED(SIZE, TAKE(WORDS, (size_t)-1, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        REFUSED(PARAMETER, TAKE(WORDS, count, 7, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        CHECK(equal(error.field, "fiber_count") && error.value == 7.0);
+        REFUSED(PARAMETER, TAKE(WORDS, count, 2, 9, VM_CLASS_STANDARD, 1e-3));
+        CHECK(equal(error.field, "mode") && error.value == 9.0);
+        REFUSED(PARAMETER, TAKE(WORDS, count, 2, VM_MODE_FES, 3, 1e-3));
+        CHECK(equal(error.field, "accuracy_class") && error.value == 3.0);
+        REFUSED(PARAMETER, TAKE(WORDS, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1.0));
+        CHECK(equal(error.field, "time_step_s") && error.value == 1.0);
+        REFUSED(WORDS, TAKE(OTHER_WORDS, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        CHECK(equal(error.field, "words: arithmetic") && error.value != error.least);
+        REFUSED(WORDS, TAKE(WORDS, count, 2, VM_MODE_CONTINUOUS, VM_CLASS_STANDARD, 1e-3));
+        DIFFERS("mode", VM_MODE_FES, VM_MODE_CONTINUOUS);
+        REFUSED(WORDS, TAKE(WORDS, count, 2, VM_MODE_FES, VM_CLASS_FINE, 1e-3));
+        DIFFERS("accuracy_class", VM_CLASS_STANDARD, VM_CLASS_FINE);
+        REFUSED(WORDS, TAKE(WORDS, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 5e-4));
+        CHECK(equal(error.field, "words: time_step_s") && error.value > 0.99e-3 && error.least < 0.51e-3);
+        REFUSED(WORDS, TAKE(WORDS, count - 1, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        DIFFERS("count", (double)(count - 1), (double)count);
+        REFUSED(WORDS, TAKE(copy, count + 1, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        DIFFERS("count", (double)(count + 1), (double)count);
+        REFUSED(WORDS, TAKE(WORDS, 0, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        DIFFERS("count", 0.0, (double)count);
+        for (index = 0; index < count; index++) {
+            copy[index] ^= 1u << index % 32;
+            REFUSED(WORDS, TAKE(copy, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+            copy[index] = WORDS[index];
+        }
+        CHECK(equal(error.field, "words: checksum") && error.value != error.least);
+        copy[0]++;
+        REFUSED(WORDS, F(from_words)(muscle, size, copy, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3, 0));
+        REFUSED(WORDS, TAKE(copy, count, 2, VM_MODE_FES, VM_CLASS_STANDARD, 1e-3));
+        CHECK(equal(error.field, "words: version") && error.value == error.least + 1.0);
+        REFUSED(OK, F(checksums)(muscle, &read, &stepped));
+        CHECK(read == coefficients && stepped == state);
+#undef TAKE
+#undef DIFFERS
+    }
     /* Fatigue. */
     {
         static T(Fatigue) fatigue;

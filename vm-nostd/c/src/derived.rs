@@ -31,13 +31,18 @@ pub(crate) fn admitted<'a>(params: *const VmMuscleParams) -> Result<&'a VmMuscle
     if params.version != VM_VERSION {
         return Err(VmResult::Version.into());
     }
-    let (least, most) = if cfg!(feature = "types") { (1, VM_MAX_FIBERS as u32) } else { (2, 2) };
-    if !(least..=most).contains(&params.fiber_count) {
-        let limit = Limit::Within { least: least.into(), most: most.into() };
-        let value = params.fiber_count.into();
-        return Err(ParameterError { field: "fiber_count", fiber: None, value, limit }.into());
-    }
+    has_types(params.fiber_count)?;
     Ok(params)
+}
+
+/// Refuses a number of types that this library does not have.
+pub(crate) fn has_types(count: u32) -> Result<(), ParameterError> {
+    let (least, most) = if cfg!(feature = "types") { (1, VM_MAX_FIBERS as u32) } else { (2, 2) };
+    if (least..=most).contains(&count) {
+        return Ok(());
+    }
+    let limit = Limit::Within { least: least.into(), most: most.into() };
+    Err(ParameterError { field: "fiber_count", fiber: None, value: count.into(), limit })
 }
 
 fn derived_of<const N: usize>(params: &VmMuscleParams) -> Result<VmDerived, Refusal> {

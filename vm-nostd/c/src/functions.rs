@@ -113,6 +113,29 @@ macro_rules! functions {
             told(muscle::build::<$S, _>(muscle, &order), error)
         }
 
+        /// Takes a muscle from the words that `vm emit` wrote, with the bits of a built one; firmware
+        /// that builds none is smaller. Number of types, mode, class and time step must be those of
+        /// the words. VM_RESULT_WORDS if they are others, or if the words are damaged or of another
+        /// version; `error`, which may be null, has details of that, VM_RESULT_PARAMETER and
+        /// VM_RESULT_SIZE. Rest or restore comes next.
+        #[allow(unsafe_code)]
+        #[unsafe(export_name = concat!($prefix, "from_words"))]
+        pub extern "C" fn vm_a_from_words(
+            muscle: *mut VmMuscleA,
+            size: usize,
+            words: *const u32,
+            count: usize,
+            fiber_count: u32,
+            mode: u32,
+            accuracy_class: u32,
+            time_step_s: f64,
+            error: *mut VmError,
+        ) -> VmResult {
+            let (types, class) = (fiber_count, accuracy_class);
+            let emitted = Emitted { size, words, count, types, mode, class, time_step_s, error };
+            told(muscle::from_words::<$S, _>(muscle, &emitted), error)
+        }
+
         /// Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
         /// muscle is unchanged.
         #[allow(unsafe_code)]

@@ -1,9 +1,9 @@
 //! What the functions of a muscle do, in every arithmetic.
 
 use crate::arithmetic::{Arithmetic, InputOf, OutputOf};
-use crate::derived::admitted;
+use crate::derived::{admitted, has_types};
 use crate::kinds::{Held, Mode, VmMode, by_kind, mode_of};
-use crate::params::{VM_CLASS_ECONOMY, VM_CLASS_FINE, VM_CLASS_STANDARD, VmMuscleParams};
+use crate::params::{VM_CLASS_ECONOMY, VM_CLASS_FINE, VM_CLASS_STANDARD, VmMuscleParams, class_of};
 use crate::pointer::{Place, borrow, places, read, slice};
 use crate::result::{Refusal, VmError, VmResult};
 use crate::slot::{Header, Memory, Thing, bytes, mark};
@@ -52,16 +52,56 @@ fn build_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
     let muscle = Muscle::<S, R, N>::build_with_units(&model, &units, step)?;
     // Nobody sees this state: the first step is refused until the muscle is at rest somewhere.
     let state = muscle.rest(S::path_length(model.middle_path()))?;
-    // All three fit a byte: they have been checked.
-    let header = Header {
-        mark: mark::<S>(Thing::Muscle),
-        mode: mode as u8,
-        types: N as u8,
-        class: params.accuracy_class as u8,
-        rested: 0,
-    };
-    memory.put(header, Held { muscle, state });
+    memory.put(header::<S, N>(mode, params.accuracy_class), Held { muscle, state });
     Ok(())
+}
+
+/// Header of a muscle without a state. Mode and class have been checked.
+fn header<S: Arithmetic, const N: usize>(mode: VmMode, class: u32) -> Header {
+    let [mode, types, class] = [mode as u8, N as u8, class as u8];
+    Header { mark: mark::<S>(Thing::Muscle), mode, types, class, rested: 0 }
+}
+
+/// What is asked of words.
+pub struct Emitted {
+    /// Memory's size.
+    pub size: usize,
+    pub words: *const u32,
+    pub count: usize,
+    pub types: u32,
+    pub mode: u32,
+    pub class: u32,
+    pub time_step_s: f64,
+    pub error: *mut VmError,
+}
+
+fn read_kind<S: Arithmetic, R: Mode<S, N>, const N: usize>(
+    memory: Memory,
+    mode: VmMode,
+    emitted: &Emitted,
+) -> Result<(), Refusal> {
+    let (size, needed) = (emitted.size, bytes::<Held<S, R, N>>());
+    if size < needed {
+        return Err(Refusal::Size { size, needed });
+    }
+    let words = slice(emitted.words, emitted.count)?;
+    let class = class_of(emitted.class)?;
+    let step = TimeStep::from_seconds(emitted.time_step_s)?;
+    let muscle = Muscle::<S, R, N>::from_words(words, class, step)?;
+    // Nobody sees this state.
+    let state = muscle.rest(muscle.path_length_range().0)?;
+    memory.put(header::<S, N>(mode, emitted.class), Held { muscle, state });
+    Ok(())
+}
+
+/// Reads a muscle from words into memory.
+pub fn from_words<S: Arithmetic, T>(memory: *mut T, emitted: &Emitted) -> Result<(), Refusal> {
+    Place::optional(emitted.error)?;
+    let memory = Memory::new(memory)?;
+    let mode = mode_of(emitted.mode)?;
+    has_types(emitted.types)?;
+    let none = Err(VmResult::NotBuilt.into());
+    by_kind!(emitted.types, emitted.mode, none, read_kind::<S>, (memory, mode, emitted))
 }
 
 /// Builds a muscle in memory.

@@ -13,6 +13,7 @@ pub fn told(outcome: Result<(), Refusal>, error: *mut VmError) -> VmResult {
             (VmResult::Parameter, Some(details))
         }
         Refusal::Size { size, needed } => (VmResult::Size, Some(VmError::size(size, needed))),
+        Refusal::Words(error) => (VmResult::Words, Some(error.into())),
     };
     // A place that cannot be written was refused before.
     if let (Ok(place), Some(details)) = (Place::new(error), details) {

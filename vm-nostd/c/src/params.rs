@@ -146,6 +146,16 @@ pub struct VmFiber {
     pub yield_time_s: f64,
 }
 
+/// The class of a number.
+pub(crate) fn class_of(number: u32) -> Result<Class, ParameterError> {
+    let classes = [
+        (VM_CLASS_STANDARD, Class::Standard),
+        (VM_CLASS_ECONOMY, Class::Economy),
+        (VM_CLASS_FINE, Class::Fine),
+    ];
+    choice("accuracy_class", number, &classes)
+}
+
 impl VmMuscleParams {
     /// Converts to the model's type; an unknown class and flags other than 0 and 1 are refused.
     pub(crate) fn model<const N: usize>(&self) -> Result<MuscleParams<N>, ParameterError> {
@@ -154,12 +164,7 @@ impl VmMuscleParams {
         for (index, (place, fiber)) in fibers.iter_mut().zip(&self.fibers).enumerate() {
             *place = fiber.model(index)?;
         }
-        let classes = [
-            (VM_CLASS_STANDARD, Class::Standard),
-            (VM_CLASS_ECONOMY, Class::Economy),
-            (VM_CLASS_FINE, Class::Fine),
-        ];
-        let class = choice("accuracy_class", self.accuracy_class, &classes)?;
+        let class = class_of(self.accuracy_class)?;
         Ok(MuscleParams {
             mass: self.mass_kg,
             fascicle_length: self.fascicle_length_m,

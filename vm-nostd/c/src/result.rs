@@ -3,7 +3,7 @@
 use crate::names;
 use core::ffi::c_char;
 use model::control::JointError;
-use model::{Limit, ParameterError, RestoreError};
+use model::{Differs, Limit, ParameterError, RestoreError, WordsError};
 
 /// Result of a function: VM_RESULT_OK (0), or an error that has changed nothing.
 #[repr(C)]
@@ -29,6 +29,8 @@ pub enum VmResult {
     NotRested = 8,
     /// VmMuscleParams.version is not VM_VERSION of this library.
     Version = 9,
+    /// The words are damaged, or of something else than was asked for; VmError has details.
+    Words = 10,
 }
 
 /// Bytes of VmError's field, including the final 0.
@@ -89,6 +91,40 @@ impl From<ParameterError> for VmError {
     }
 }
 
+impl From<WordsError> for VmError {
+    fn from(error: WordsError) -> Self {
+        let equal = |field, found, expected| {
+            Self::new(["words: ", field], None, found, (expected, expected))
+        };
+        match error {
+            WordsError::Other { what: Differs::TimeStep, found, expected } => {
+                let [found, expected] = [found, expected].map(|bits| f32::from_bits(bits).into());
+                equal("time_step_s", found, expected)
+            }
+            // VmMode counts from 0.
+            WordsError::Other { what: Differs::Mode, found, expected } => {
+                equal("mode", f64::from(found) - 1.0, f64::from(expected) - 1.0)
+            }
+            WordsError::Other { what, found, expected } => {
+                let field = match what {
+                    Differs::Version => "version",
+                    Differs::Arithmetic => "arithmetic",
+                    Differs::Types => "fiber_count",
+                    Differs::Class => "accuracy_class",
+                    _ => "layout",
+                };
+                equal(field, found.into(), expected.into())
+            }
+            WordsError::Length { found, expected } => equal("count", found as f64, expected as f64),
+            WordsError::Checksum { found, expected } => {
+                equal("checksum", found.into(), expected.into())
+            }
+            WordsError::Value { word } => equal("index of a value out of range", word as f64, 0.0),
+            _ => equal("", 0.0, 0.0),
+        }
+    }
+}
+
 impl From<RestoreError> for VmResult {
     fn from(error: RestoreError) -> Self {
         match error {
@@ -107,6 +143,14 @@ pub enum Refusal {
     Parameter(JointError),
     /// Memory of `size`, where `needed` is needed.
     Size { size: usize, needed: usize },
+    /// Words that are not of what was asked for.
+    Words(WordsError),
+}
+
+impl From<WordsError> for Refusal {
+    fn from(error: WordsError) -> Self {
+        Self::Words(error)
+    }
 }
 
 impl From<VmResult> for Refusal {

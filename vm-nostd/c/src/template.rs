@@ -26,7 +26,7 @@ pub(crate) use crate::control::prosthesis::Prostheses;
 pub(crate) use crate::control::prosthesis_params::{VM_DELAY_TICKS, VmProsthesisParams};
 pub(crate) use crate::control::{VM_ANTAGONISTS, VmControlInfo};
 pub(crate) use crate::extras::{self, Question, VmCurveParams, VmFatigueParams};
-pub(crate) use crate::muscle::{self, Order};
+pub(crate) use crate::muscle::{self, Emitted, Order};
 pub(crate) use crate::outcome::{plain, told};
 pub(crate) use crate::params::VmMuscleParams;
 pub(crate) use crate::pointer::{Place, read};
