@@ -3,6 +3,7 @@
 mod arm;
 mod closed_loop;
 mod cycles;
+mod emit;
 mod fit;
 mod hil;
 mod measured;
@@ -51,6 +52,8 @@ enum Command {
     Golden(GoldenArgs),
     /// Estimate cycles per tick on a Cortex-M4F from the instructions that QEMU executes.
     Cycles(cycles::CyclesArgs),
+    /// Write a muscle as constant words for firmware that does not build it.
+    Emit(emit::EmitArgs),
     /// Compute the stimulator's deepest stack and free memory from its image.
     Stack(stack::StackArgs),
     /// Play a trace of inputs to the firmware, on a board or in QEMU, and compare every bit with
@@ -161,6 +164,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => plot::run(&args).map(|()| true),
         Command::Golden(args) => compare_bits(&args),
         Command::Cycles(args) => cycles::run(&args),
+        Command::Emit(args) => emit::run(&args).map(|()| true),
         Command::Stack(args) => stack::run(&args),
         Command::Hil(args) => hil::run(&args).map(|()| true),
         Command::Arm(args) => arm::run(&args).map(|()| true),

@@ -3,7 +3,7 @@
 mod running;
 mod stepped;
 
-pub use running::{MOST_UNITS, Row, RunError, Running};
+pub use running::{C_UNITS, MOST_UNITS, Row, RunError, Running};
 
 use crate::model_muscle::{self, with_type_count};
 use crate::reference::{Input, Mode, Muscle, Simulation};
@@ -265,7 +265,7 @@ impl Running for Simulation {
 }
 
 /// Number of motor units of a muscle; an error if a type has none.
-fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
+pub(crate) fn count_units(muscle: &Muscle) -> Result<usize, RunError> {
     match muscle.fibers.iter().find(|fiber| fiber.units.is_empty()) {
         Some(fiber) => Err(RunError::NoUnits(fiber.fiber_type.rank)),
         None => Ok(muscle.fibers.iter().map(|fiber| fiber.units.len()).sum()),

@@ -6,6 +6,7 @@ pub mod closed_loop;
 pub mod coefficients;
 pub mod command_line;
 pub mod cycles;
+pub mod emit;
 pub mod engine;
 pub mod figures;
 pub mod fit;

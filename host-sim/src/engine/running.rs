@@ -7,6 +7,9 @@ use vm_nostd as vm;
 /// Most motor units of a muscle on the host; the library has no limit.
 pub const MOST_UNITS: usize = 512;
 
+/// Most motor units of a muscle in the C library.
+pub const C_UNITS: usize = 64;
+
 /// Why a run failed.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -35,6 +38,9 @@ pub enum RunError {
     /// More motor units than the host supports.
     #[error("{0} motor units: at most {most} are supported", most = MOST_UNITS)]
     UnitCount(usize),
+    /// More motor units than the C library has room for.
+    #[error("{0} motor units: the C library has room for {most}", most = C_UNITS)]
+    UnitsInC(usize),
     /// More fibre types than the host supports.
     #[error("{0} fibre types: 1 to {most} are supported", most = model_muscle::MOST_TYPES)]
     TypeCount(usize),
