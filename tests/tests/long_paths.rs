@@ -102,7 +102,7 @@ fn clips_at_the_end<S: Scalar>() {
     let flagged = |path: f64| {
         let mut state = muscle.rest(longest).expect("in range");
         let input = vm_nostd::Input {
-            activation: S::HALF,
+            activation: S::from_f64(0.5),
             path_length: S::path_length(path),
             stimulation_frequency: S::quantity(0.0),
         };

@@ -33,7 +33,7 @@ fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Inp
 
 /// A force in N, in an arithmetic.
 fn force<S: Scalar>(newtons: f64) -> S::Force {
-    S::ONE.force(&S::force_factor(newtons))
+    S::from_newtons(newtons)
 }
 
 /// Largest errors of the steady force and of the inverse, % of F0.

@@ -3,7 +3,7 @@
 use crate::io::Input;
 use crate::params::MuscleParams;
 use crate::params::limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::status::Status;
 use crate::summed::summed;
 use crate::tick::admission::admit_one;
@@ -52,13 +52,16 @@ impl<S: Scalar> Domain<S> {
             stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::quantity),
             path_length: Range::new(paths, S::path_length),
             filaments: Range::new(filaments, S::from_f64),
-            shortening_velocity: S::from_f64(Scalar::max(
+            shortening_velocity: S::from_f64(Arithmetic::max(
                 params.shortening_velocity(),
                 -MAXIMUM_SPEED,
             )),
             fascicle_length: Range::new((filaments.0, longest), S::from_f64),
             fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
-            unflagged: Range::new((filaments.0, Scalar::min(filaments.1, longest)), S::from_f64),
+            unflagged: Range::new(
+                (filaments.0, Arithmetic::min(filaments.1, longest)),
+                S::from_f64,
+            ),
         }
     }
 

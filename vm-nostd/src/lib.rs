@@ -166,8 +166,8 @@ pub use recruitment::{
     NaturalDiscrete, Recruitment, UnitSizes,
 };
 pub use saved::RestoreError;
-pub use scalar::Scalar;
 pub use scalar::fixed::Fixed;
+pub use scalar::{Representation, Scalar};
 pub use state::State;
 pub use status::Status;
 pub use tick::time_step::TimeStep;

@@ -16,7 +16,7 @@ use crate::recruitment::{
     Recruitment, RecruitmentTick,
 };
 use crate::saved::{ROUNDING, RestoreError, Saved};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::state::State;
 use crate::status::Status;
 use crate::summed::{Summed, summed};
@@ -86,7 +86,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (least, most) = S::MAXIMAL_FORCES;
         let force = params.max_isometric_force();
         // F0 at a limit may be outside it by rounding if the mass was computed from F0.
-        let nearest = Scalar::min(Scalar::max(force, least), most);
+        let nearest = Arithmetic::min(Arithmetic::max(force, least), most);
         let rounded = (force - nearest).abs() <= 1e-9 * nearest;
         within("mass: F0, N", if rounded { nearest } else { force }, least, most)?;
         let elements = &params.elements;

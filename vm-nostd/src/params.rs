@@ -13,7 +13,7 @@ use crate::equations::sag::SagParams;
 use crate::equations::tendon::TendonParams;
 use crate::equations::yielding::YieldParams;
 use crate::error::{Limit, ParameterError, within};
-use crate::scalar::Scalar;
+use crate::scalar::Arithmetic;
 use crate::tick::time_step::TimeStep;
 use class::Class;
 use limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
@@ -208,11 +208,11 @@ impl<const N: usize> MuscleParams<N> {
         let parallel = &self.elements.parallel;
         let maximum = self.maximum_fascicle_length();
         let most_passive = parallel.length_at(LEAST_FORCE - 1.0) * maximum;
-        let fascicles = Scalar::min(self.fascicle_domain().1, most_passive);
+        let fascicles = Arithmetic::min(self.fascicle_domain().1, most_passive);
         let force = parallel.force(fascicles / maximum) + 1.0;
         let longest =
             fascicles * self.fascicle_length + tendon.length_at(force) * self.tendon_length;
-        (shortest, Scalar::max(longest, self.max_path_length))
+        (shortest, Arithmetic::max(longest, self.max_path_length))
     }
 
     /// Midpoint between the shortest path and `max_path_length`, m.
@@ -224,8 +224,8 @@ impl<const N: usize> MuscleParams<N> {
     /// `largest` (L_ce0).
     pub(crate) fn path_domain_within(&self, longest_path: f64, largest: f64) -> (f64, f64) {
         let (shortest, longest) = self.path_domain();
-        let most = Scalar::min(longest_path, shortest + largest * self.fascicle_length);
-        (shortest, Scalar::min(longest, most))
+        let most = Arithmetic::min(longest_path, shortest + largest * self.fascicle_length);
+        (shortest, Arithmetic::min(longest, most))
     }
 
     /// Longest fascicles on paths up to `longest` (m), in L_ce0: at rest plus the margin for
@@ -244,7 +244,7 @@ impl<const N: usize> MuscleParams<N> {
                 most = length;
             }
         }
-        Scalar::min(most + RINGING_ROOM, none_left)
+        Arithmetic::min(most + RINGING_ROOM, none_left)
     }
 
     /// Validates the parameters; the error has field, value and limit.

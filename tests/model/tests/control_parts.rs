@@ -16,7 +16,7 @@ fn cancels<S: Scalar>(rounding: f64) {
     // Two lags with a constant input for a tick: x = exp(-dt/T), exactly.
     let decay = (-1e-3_f64 / lag).exp();
     for tick in 1..=400 {
-        let input = lead.step(&mut state, S::HALF).to_f64();
+        let input = lead.step(&mut state, S::from_f64(0.5)).to_f64();
         let (a, b) = (first - input, second - input);
         second = input + (b + a * 1e-3 / lag) * decay;
         first = input + a * decay;

@@ -101,8 +101,8 @@ fn saved<S: Scalar>() {
     let mut restored = fatigue.restore(words.iter().copied()).expect("a saved state");
     for _ in 0..1_000 {
         assert_eq!(
-            fatigue.advance(&mut state, S::HALF, f),
-            fatigue.advance(&mut restored, S::HALF, f)
+            fatigue.advance(&mut state, S::from_f64(0.5), f),
+            fatigue.advance(&mut restored, S::from_f64(0.5), f)
         );
     }
     assert_eq!(state, restored);

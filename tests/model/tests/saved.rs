@@ -19,8 +19,11 @@ fn built<S: Scalar, R: Mode<S>>(params: &Params, step: TimeStep) -> Muscle<S, R,
 /// Words of a saved state after some ticks.
 fn saved<S: Scalar, R: Recruitment<S, 2>>(muscle: &Muscle<S, R, 2>) -> Vec<S::Bits> {
     let path_length = S::path_length(0.16);
-    let input =
-        Input { activation: S::HALF, path_length, stimulation_frequency: S::quantity(30.0) };
+    let input = Input {
+        activation: S::from_f64(0.5),
+        path_length,
+        stimulation_frequency: S::quantity(30.0),
+    };
     let mut state = muscle.rest(path_length).expect("in range");
     for _ in 0..100 {
         muscle.step(&mut state, input);

@@ -18,7 +18,7 @@ fn input<S: Scalar>(activation: f64, path: f64, frequency: f64) -> vm_nostd::Inp
 
 /// A force in N, in an arithmetic.
 fn force<S: Scalar>(newtons: f64) -> S::Force {
-    S::ONE.force(&S::force_factor(newtons))
+    S::from_newtons(newtons)
 }
 
 /// The steady force of a stimulation is the steady force of the stimulation that the inverse

@@ -11,8 +11,8 @@
 use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
-use crate::scalar::Scalar;
 use crate::scalar::float::square_root;
+use crate::scalar::{Kernels, Scalar};
 use crate::summed::{FromWords, Sink, Summed, Words, summed};
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
@@ -139,7 +139,7 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
             ticks: (params.delay / step.seconds() + 0.5) as usize,
             shape: Shape(
                 (shape <= NEARLY_STRAIGHT)
-                    .then(|| [S::from_f64(shape), S::from_f64(1.0 / (Scalar::exp(shape) - 1.0))]),
+                    .then(|| [S::from_f64(shape), S::from_f64(1.0 / (Kernels::exp(shape) - 1.0))]),
             ),
             bend: S::from_f64(0.5 * shape),
         })

@@ -6,7 +6,7 @@
 use crate::error::{ParameterError, within};
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
@@ -48,7 +48,7 @@ impl LeadParams {
     pub fn validate(&self) -> Result<(), ParameterError> {
         within("lead.rise_time", self.rise_time, 1e-3, 1.0)?;
         within("lead.fall_time", self.fall_time, 1e-3, 1.0)?;
-        let longer = Scalar::max(self.rise_time, self.fall_time);
+        let longer = Arithmetic::max(self.rise_time, self.fall_time);
         within("lead.filter_time", self.filter_time, 0.1 * longer, 1.0)
     }
 }

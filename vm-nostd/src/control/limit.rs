@@ -1,7 +1,7 @@
 //! Limits of a command: range and rate.
 
 use crate::error::{ParameterError, within};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
@@ -53,7 +53,7 @@ impl<S: Scalar> Limiter<S> {
         Ok(Self {
             least: S::from_f64(limits.least / unit),
             most: S::from_f64(limits.most / unit),
-            change: S::from_f64(Scalar::min(limits.rate * step.seconds() / unit, 60.0)),
+            change: S::from_f64(Arithmetic::min(limits.rate * step.seconds() / unit, 60.0)),
         })
     }
 

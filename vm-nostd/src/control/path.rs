@@ -9,7 +9,7 @@
 //! muscle flexes, towards greater angles.
 
 use crate::error::{Limit, ParameterError, within};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 
 /// Highest power of an angle.
@@ -51,7 +51,7 @@ impl AngleRange {
     /// they would take -1. Of a narrow range the little is 4 ULP, for an end and the middle are
     /// rounded.
     pub(super) fn reach(&self) -> f64 {
-        Scalar::max(self.half() * (1.0 + 1e-6), self.half() + 4.0 * ULP)
+        Arithmetic::max(self.half() * (1.0 + 1e-6), self.half() + 4.0 * ULP)
     }
 }
 
@@ -161,7 +161,7 @@ impl<const J: usize> PathParams<J> {
             let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
             let mut include = |angle: f64| {
                 let (value, slope) = at(angle);
-                (least, most) = (Scalar::min(least, value), Scalar::max(most, value));
+                (least, most) = (Arithmetic::min(least, value), Arithmetic::max(most, value));
                 slope
             };
             let mut before = (range.least, include(range.least));
@@ -183,8 +183,8 @@ impl<const J: usize> PathParams<J> {
                 };
                 self.product * end(0, a) * end(1, b)
             });
-            shortest += corners.into_iter().fold(f64::INFINITY, Scalar::min);
-            longest += corners.into_iter().fold(f64::NEG_INFINITY, Scalar::max);
+            shortest += corners.into_iter().fold(f64::INFINITY, Arithmetic::min);
+            longest += corners.into_iter().fold(f64::NEG_INFINITY, Arithmetic::max);
         }
         (shortest, longest)
     }
@@ -218,7 +218,7 @@ impl<const J: usize> PathParams<J> {
     /// greatest slope that it can have.
     fn validate_arm(&self, j: usize, ranges: &[AngleRange; J]) -> Result<(), ParameterError> {
         let range = &ranges[j];
-        let reach = Scalar::max(
+        let reach = Arithmetic::max(
             (range.least - self.reference[j]).abs(),
             (range.most - self.reference[j]).abs(),
         );
@@ -233,7 +233,7 @@ impl<const J: usize> PathParams<J> {
         if J == 2 {
             let (beside, reference) = (&ranges[1 - j], self.reference[1 - j]);
             let ends = [beside.least, beside.most].map(|angle| self.product * (angle - reference));
-            other = (Scalar::min(ends[0], ends[1]), Scalar::max(ends[0], ends[1]));
+            other = (Arithmetic::min(ends[0], ends[1]), Arithmetic::max(ends[0], ends[1]));
         }
         for sample in 0..=SAMPLES {
             let slope = polynomial(&self.terms[j], sampled(range, sample) - self.reference[j]).1;

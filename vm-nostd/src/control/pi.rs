@@ -6,7 +6,7 @@
 
 use crate::error::{ParameterError, within};
 use crate::saved::{RestoreError, Saved};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
@@ -120,7 +120,7 @@ impl<S: Scalar> Pi<S> {
         let scale = error_unit / unit;
         // In fixed point greater coefficients would saturate.
         let coefficient = |field, gain: f64, factor: f64, most: f64| {
-            within(field, gain, 0.0, Scalar::min(S::LARGEST_COEFFICIENT / factor, most))?;
+            within(field, gain, 0.0, Arithmetic::min(S::LARGEST_COEFFICIENT / factor, most))?;
             Ok(S::from_f64(gain * factor))
         };
         let sum = scale * TICKS * step.seconds();

@@ -5,8 +5,8 @@
 //! share one logarithm and one reciprocal, and no power of L is computed in a tick.
 
 use crate::error::{ParameterError, within};
-use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::summed::summed;
 use core::array::from_fn;
 
@@ -78,13 +78,13 @@ impl ForceLengthParams {
 
     /// rho ln((L^beta - 1)/((L - 1) omega)) at a length.
     fn smooth_at(&self, length: f64) -> f64 {
-        let logarithm = Scalar::ln(length);
+        let logarithm = Kernels::ln(length);
         // |L^x - 1|; for L > 1 divided by L^x.
         let distance = |exponent: f64| one_minus_exp(exponent * logarithm.abs());
         let ratio =
             if logarithm == 0.0 { self.skewness } else { distance(self.skewness) / distance(1.0) };
-        let above = (self.skewness - 1.0) * Scalar::max(logarithm, 0.0);
-        self.roundness * (Scalar::ln(ratio / self.width) + above)
+        let above = (self.skewness - 1.0) * Arithmetic::max(logarithm, 0.0);
+        self.roundness * (Kernels::ln(ratio / self.width) + above)
     }
 }
 

@@ -254,6 +254,7 @@ impl<S: Scalar> ForceVelocity<S> {
 mod tests {
     use super::*;
     use crate::params::presets::PAPER_MUSCLE;
+    use crate::scalar::Kernels;
     use crate::scalar::fixed::Fixed;
 
     #[test]

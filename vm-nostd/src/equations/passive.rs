@@ -3,7 +3,7 @@
 
 use crate::equations::tendon::softplus_inverse;
 use crate::error::{ParameterError, within};
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
@@ -74,8 +74,8 @@ impl CompressionParams {
 impl CompressionParams {
     /// F_pe2 in F0 for a fascicle length in L_ce0.
     pub(crate) fn force(&self, length: f64) -> f64 {
-        let growth = Scalar::exp(self.steepness * (length - self.onset_length));
-        Scalar::min(self.strength * (growth - 1.0), 0.0)
+        let growth = Kernels::exp(self.steepness * (length - self.onset_length));
+        Arithmetic::min(self.strength * (growth - 1.0), 0.0)
     }
 }
 
@@ -139,7 +139,7 @@ const NO_STRENGTH: f64 = 1e-9;
 impl<S: Scalar> Compression<S> {
     pub(crate) fn new(params: &CompressionParams, step: TimeStep) -> Self {
         let strength = -params.strength;
-        let logarithm = Scalar::ln(Scalar::max(strength, NO_STRENGTH));
+        let logarithm = Kernels::ln(Arithmetic::max(strength, NO_STRENGTH));
         Self {
             strength: S::from_f64(strength),
             steepness: S::factor(params.steepness),

@@ -1,8 +1,8 @@
 //! Tendon and aponeurosis: F_se = cT kT ln(exp((L_se - LrT)/kT) + 1).
 
 use crate::error::{ParameterError, within};
-use crate::scalar::Scalar;
 use crate::scalar::float::one_minus_exp;
+use crate::scalar::{Kernels, Scalar};
 use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 
@@ -41,7 +41,7 @@ impl TendonParams {
 
 /// ln(exp(x) - 1) for x above 0, without overflow.
 pub(crate) fn softplus_inverse(x: f64) -> f64 {
-    x + Scalar::ln(one_minus_exp(x))
+    x + Kernels::ln(one_minus_exp(x))
 }
 
 summed! {

@@ -24,9 +24,9 @@ use crate::params::MuscleParams;
 use crate::params::class::{Class, Substeps};
 use crate::params::limits::MAXIMUM_SPEED;
 use crate::recruitment::RecruitmentTick;
-use crate::scalar::Scalar;
 use crate::scalar::cold::cold_path;
 use crate::scalar::float::{square_root, tangent};
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 use crate::tick::course::Course;
 use crate::tick::range::Range;
@@ -140,7 +140,7 @@ impl<S: Scalar> Substep<S> {
         let half = 0.5 * seconds;
         let inertia = mass / half;
         // Half the phase of the ringing in a substep. The midpoint rule gives its tangent.
-        let phase = Scalar::min(half * square_root(stiffness / mass), FASTEST_RINGING);
+        let phase = Arithmetic::min(half * square_root(stiffness / mass), FASTEST_RINGING);
         let share = phase / tangent(phase);
         Self {
             half: S::part(half / step.seconds()),

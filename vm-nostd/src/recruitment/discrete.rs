@@ -16,7 +16,7 @@ use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
 use crate::saved::{RestoreError, Saved};
-use crate::scalar::{Scalar, sealed::Sealed};
+use crate::scalar::{Arithmetic, Scalar, sealed::Sealed};
 use crate::summed::summed;
 use crate::tick::range::{Range, share};
 use crate::tick::time_step::TimeStep;
@@ -104,7 +104,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             let fiber_type = &params.fibers.get(unit.fiber)?.fiber_type;
             cumulative += unit.share;
             let threshold = params.recruitment_saturation * cumulative;
-            let threshold = Scalar::min(Scalar::max(threshold, LEAST_THRESHOLD), 1.0);
+            let threshold = Arithmetic::min(Arithmetic::max(threshold, LEAST_THRESHOLD), 1.0);
             Some(Unit {
                 fiber: unit.fiber,
                 share: S::from_f64(unit.share),

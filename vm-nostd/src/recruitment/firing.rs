@@ -2,7 +2,7 @@
 //! threshold Uth to fmax at U = 1; below Uth it is 0.
 
 use crate::params::FiberType;
-use crate::scalar::Scalar;
+use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
 
 summed! {
@@ -25,7 +25,7 @@ impl<S: Scalar> Firing<S> {
         let FiberType { minimum_frequency, maximum_frequency, .. } = *fiber_type;
         // Use the rounded threshold, so that f_env is fmin there and never below 0.
         let threshold = S::from_f64(threshold);
-        let range = Scalar::max(1.0 - threshold.to_f64(), LEAST_RANGE);
+        let range = Arithmetic::max(1.0 - threshold.to_f64(), LEAST_RANGE);
         Self {
             threshold,
             maximum_frequency: S::from_f64(maximum_frequency),

@@ -12,8 +12,8 @@ use crate::equations::tendon::Tendon;
 use crate::io::Input;
 use crate::params::FiberType;
 use crate::params::presets::{PAPER_MUSCLE, feline_vm4, human_vm4, paper_table_1};
-use crate::scalar::Scalar;
 use crate::scalar::fixed::Fixed;
+use crate::scalar::{Factors, Kernels, Scalar};
 use crate::tick::lag::Lag;
 use crate::tick::time_step::TimeStep;
 

@@ -1,6 +1,7 @@
 //! Exponentials: 32-bit products, shifts and a table of powers of two.
 
-use super::number::{exact, high, square};
+use super::number::{Fixed, exact, high, square};
+use super::share::Share;
 use crate::scalar::series;
 
 /// log2 e in Q2.30.
@@ -32,8 +33,8 @@ pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
 /// y + y²/2 + y³/6 has a truncation error of y⁴/24 < 2^-30; it is below 2^26 in Q0.32, and its
 /// product with half the entry below 2^25. The mantissa is 1 to 2; rounding can make it slightly
 /// less than 1.
-fn parts(x: i32) -> (u32, i32) {
-    let (twos, low) = exact(x, LOG2_E);
+fn parts(x: Fixed) -> (u32, i32) {
+    let (twos, low) = exact(x.to_bits(), LOG2_E);
     let fraction = ((twos as u32) << 10) | (low >> 22);
     let index = (fraction >> (32 - POWER_BITS)) as usize;
     let rest = fraction << POWER_BITS >> POWER_BITS;
@@ -59,9 +60,11 @@ fn shifted(mantissa: u32, shift: u32) -> u32 {
 /// # Scaling and overflow
 /// Exponents are -185 to 184. The mantissa in Q1.31 is shifted right by 7 - exponent to Q8.24. From
 /// an exponent of 7 on the result saturates; below -25 the shift exceeds 32 and the result is 0.
-pub(super) fn exp(x: i32) -> i32 {
+pub(super) fn exp(x: Fixed) -> Fixed {
     let (mantissa, exponent) = parts(x);
-    if exponent >= 7 { i32::MAX } else { shifted(mantissa, (7 - exponent) as u32) as i32 }
+    let bits =
+        if exponent >= 7 { i32::MAX } else { shifted(mantissa, (7 - exponent) as u32) as i32 };
+    Fixed::from_bits(bits)
 }
 
 /// e^-x in Q0.32 for x >= 0, clamped to one unit below 1; the error is below 8 units.
@@ -70,36 +73,11 @@ pub(super) fn exp(x: i32) -> i32 {
 /// For x > 0 the exponent is negative: the Q1.31 mantissa is shifted right by 0 or more. For x = 0
 /// the result would be 2^32 and is clamped to 2^32 - 1.
 #[inline(always)]
-pub(super) fn decay(x: i32) -> u32 {
-    let (mantissa, exponent) = parts(-x.max(0));
+pub(super) fn decay(x: Fixed) -> Share {
+    let (mantissa, exponent) = parts(Fixed::from_bits(-x.to_bits().max(0)));
     match -1 - exponent {
-        ..=-1 => u32::MAX,
-        0 => mantissa,
-        shift => shifted(mantissa, shift as u32),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::exhaustive::{UNIT, largest_error_between};
-    use super::*;
-
-    #[test]
-    fn exp_is_within_an_ulp_or_saturates() {
-        let found = largest_error_between(-18, 5, |x| {
-            let exact = (f64::from(x) / UNIT).exp() * UNIT;
-            let saturated = exact.min(f64::from(i32::MAX));
-            (f64::from(exp(x)) - saturated).abs() / (1.0 + saturated * 2_f64.powi(-28))
-        });
-        assert!(found <= 1.0, "{found} of the bound");
-    }
-
-    #[test]
-    fn all_decays_are_within_8_ulp() {
-        let found = largest_error_between(0, 23, |x| {
-            let exact = (-f64::from(x.max(0)) / UNIT).exp() * 4_294_967_296.0;
-            (f64::from(decay(x)) - exact).abs()
-        });
-        assert!(found <= 8.0, "{found} units");
+        ..=-1 => Share::MOST,
+        0 => Share::from_bits(mantissa),
+        shift => Share::from_bits(shifted(mantissa, shift as u32)),
     }
 }

@@ -1,7 +1,13 @@
 //! Constant factors of any magnitude.
 
-use super::number::{exact, saturating_shift};
+use super::number::{FRACTION, Fixed, exact, saturating_shift};
 use crate::summed::summed;
+use fixed::types::I16F16;
+
+/// Units of a number in Q8.24.
+pub(super) const UNITS: f64 = (1 << FRACTION) as f64;
+/// Units of a quantity in Q16.16.
+pub(super) const QUANTITY_UNITS: f64 = (1 << 16) as f64;
 
 summed! {
     /// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer multiples of
@@ -35,6 +41,11 @@ impl Factor {
         Self { mantissa: nearest(mantissa), shift }
     }
 
+    #[cfg(test)]
+    pub(crate) fn value(&self) -> f64 {
+        f64::from(self.mantissa) * 2_f64.powi(-i32::from(self.shift))
+    }
+
     /// The factor mantissa × 2^-shift; `shift` is 1 to 62.
     #[inline(always)]
     pub(super) fn scaled_down(mantissa: i32, shift: u32) -> Self {
@@ -60,9 +71,19 @@ impl Factor {
 }
 
 /// Nearest integer, saturated.
-pub(super) fn nearest(value: f64) -> i32 {
+pub(super) const fn nearest(value: f64) -> i32 {
     // Adding a half and truncating rounds positive values; `as` saturates.
     (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i32
+}
+
+/// The nearest number, saturated.
+pub(crate) const fn nearest_number(value: f64) -> Fixed {
+    Fixed::from_bits(nearest(value * UNITS))
+}
+
+/// The nearest quantity, saturated.
+pub(crate) const fn nearest_quantity(value: f64) -> I16F16 {
+    I16F16::from_bits(nearest(value * QUANTITY_UNITS))
 }
 
 #[cfg(test)]

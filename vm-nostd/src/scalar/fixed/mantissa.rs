@@ -3,7 +3,7 @@
 //! Both use a table of c = 1/m at the midpoints of 64 intervals, and a series in r = m c - 1,
 //! |r| < 1/128.
 
-use super::number::{high, square};
+use super::number::{Fixed, high, square};
 use super::product;
 use crate::scalar::series;
 
@@ -112,8 +112,8 @@ const LN_2: i32 = 1_488_522_236;
 /// x is shifted left until its first bit is set; the exponent is -24 to 6. The logarithm of the
 /// mantissa, -ln c + r - r²/2 + r³/3 with a truncation error of r⁴/4 < 2^-30, is below 0.7 in
 /// Q1.31. The sum is below 17 in magnitude and has 36 of 64 bits.
-pub(super) fn ln(x: i32) -> i32 {
-    let x = x.max(1) as u32;
+pub(super) fn ln(x: Fixed) -> Fixed {
+    let x = x.to_bits().max(1) as u32;
     let zeros = x.leading_zeros();
     let (index, _, r) = reduced(x << zeros);
     // 1/3 in Q0.32.
@@ -121,44 +121,6 @@ pub(super) fn ln(x: i32) -> i32 {
     let series = r - high(r, (r >> 1) - high(r, high(r, THIRD)));
     let mantissa = LOGARITHMS[index] + (series >> 1);
     let power = 7 - zeros as i32;
-    ((product::signed(power, LN_2) + i64::from(mantissa + (1 << 6))) >> 7) as i32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::exhaustive::{UNIT, largest_error};
-    use super::*;
-
-    #[test]
-    fn reciprocals_of_all_mantissas_are_within_three_units() {
-        let found = largest_error(1 << 31, u32::MAX.into(), |m| {
-            let found = reciprocal(m as u32);
-            let error = (f64::from(found) - 2_f64.powi(62) / m as f64).abs();
-            if found <= 1 << 31 { error } else { f64::NAN }
-        });
-        assert!(found <= 3.0, "{found} units");
-    }
-
-    #[test]
-    fn reciprocals_of_two_mantissas_are_within_eight_units() {
-        let numbers: Vec<u32> = super::super::exhaustive::random_numbers()
-            .map(|m| m as u32 | (1 << 31))
-            .take(1000)
-            .collect();
-        for m in numbers.iter().flat_map(|a| numbers.iter().map(|b| [*a, *b])) {
-            for (found, m) in reciprocals(m).into_iter().zip(m) {
-                let error = f64::from(found) - 2_f64.powi(62) / f64::from(m);
-                assert!(error.abs() <= 8.0, "{m}: {error} units");
-            }
-        }
-    }
-
-    #[test]
-    fn ln_of_all_positive_numbers_is_within_an_ulp() {
-        let found = largest_error(1, i32::MAX.into(), |x| {
-            (f64::from(ln(x as i32)) - (x as f64 / UNIT).ln() * UNIT).abs()
-        });
-        assert!(found <= 1.0, "{found} units");
-        assert_eq!(ln(i32::MIN), ln(1));
-    }
+    let sum = product::signed(power, LN_2) + i64::from(mantissa + (1 << 6));
+    Fixed::from_bits((sum >> 7) as i32)
 }

@@ -18,7 +18,7 @@ impl Part {
     pub(super) const MINUS_HALF: Self = Self(i32::MIN);
 
     /// The nearest number. 1/2 would be 2^31 and is clamped to 2^31 - 1.
-    pub(super) fn new(value: f64) -> Self {
+    pub(crate) const fn new(value: f64) -> Self {
         Self(nearest(value * 4_294_967_296.0))
     }
 

@@ -39,32 +39,3 @@ pub(crate) fn one_minus_exp(x: f64) -> f64 {
 }
 
 pub(super) use one_minus_exp as short_lag_response;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Numbers from -40 to 40.
-    fn numbers() -> impl Iterator<Item = f64> {
-        (-40_000..=40_000).map(|step| f64::from(step) * 1e-3)
-    }
-
-    #[test]
-    fn softplus_and_its_slope_have_a_relative_error_below_5e_16() {
-        for x in numbers() {
-            let (value, slope) = softplus(x);
-            let (exact, logistic) = (x.exp().ln_1p(), 1.0 / (1.0 + (-x).exp()));
-            assert!((value / exact - 1.0).abs() <= 5e-16, "{x}: {value} {exact}");
-            assert!((slope / logistic - 1.0).abs() <= 5e-16, "{x}: {slope} {logistic}");
-        }
-    }
-
-    #[test]
-    fn weibull_is_within_the_bound_of_f64() {
-        for x in numbers() {
-            let power = x.exp();
-            let (value, exact) = (weibull(x), -(-power).exp_m1());
-            assert!((value / exact - 1.0).abs() <= 5e-16, "{x}: {value} {exact}");
-        }
-    }
-}

@@ -1,5 +1,5 @@
-//! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. Tests check
-//! their error bounds over their whole domains.
+//! Kernels in `f32`: short polynomials, and cubic pieces from compile-time tables. The table in
+//! `tests/kernels` holds their error bounds over every bit pattern.
 
 use crate::scalar::cold::cold_path;
 use crate::scalar::series;
@@ -56,7 +56,7 @@ pub(super) fn short_lag_response(x: f32) -> f32 {
 /// √x of a non-negative number, with a relative error from 0 to +5e-5, never negative, for x of at
 /// least 1e-37. Below that the result is at most 1e-18.
 #[inline(always)]
-pub(super) fn square_root(x: f32) -> f32 {
+pub(crate) fn square_root(x: f32) -> f32 {
     // g is 1/√x within 5 %, from half the exponent. With w = x g², √x is x g/√w; 1/√w is a minimax
     // parabola, raised by its largest error.
     let guess = f32::from_bits(0x5f35_59df - (x.to_bits() >> 1));
@@ -150,7 +150,7 @@ static SOFTPLUS: [[f32; 4]; PIECES] = {
 };
 
 /// ln(e^x + 1) and its slope. The error of the value is below 2e-6 plus 1e-7 of x, and its relative
-/// error below 2e-5; the error of the slope is below 2e-5.
+/// error below 2e-5; the error of the slope is below 2e-5. x is at most 8e37 in magnitude.
 ///
 /// Far below 0 the value is e^x, with a small relative error: in a slack muscle the equilibrium of
 /// two such forces depends on their ratio.
@@ -191,7 +191,8 @@ static WEIBULL: [[f32; 4]; PIECES] = {
 };
 const _: () = assert!((WEIBULL_MOST - WEIBULL_LEAST) * WEIBULL_PER_UNIT == PIECES as i32 - 2);
 
-/// 1 - e^-e^x for -15 <= x <= 3; the relative error is below 2e-6. x is clamped to this range.
+/// 1 - e^-e^x for -15 <= x <= 3; the relative error is below 2e-6. x, at most 4e37 in magnitude, is
+/// clamped to this range.
 #[inline(always)]
 pub(super) fn weibull(x: f32) -> f32 {
     const ZERO: i32 = 1 - WEIBULL_LEAST * WEIBULL_PER_UNIT;
@@ -202,19 +203,6 @@ pub(super) fn weibull(x: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Largest `error` over evenly spaced numbers from `least` to `most`, and over numbers near
-    /// both ends.
-    fn largest_error(least: f64, most: f64, error: impl Fn(f32, f64) -> f64) -> f64 {
-        const COUNT: u32 = 1_000_000;
-        let spaced = (0..=COUNT).map(|i| least + (most - least) * f64::from(i) / f64::from(COUNT));
-        let near = (0..2000).map(|i| f64::from(i) * 1e-7 * (most - least));
-        let all = spaced.chain(near.clone().map(|d| least + d)).chain(near.map(|d| most - d));
-        all.map(|x| x as f32).fold(0.0, |largest, x| {
-            let error = error(x, f64::from(x));
-            if error.is_nan() { error } else { largest.max(error) }
-        })
-    }
-
     #[test]
     fn tables_take_4352_bytes() {
         let bytes = size_of_val(&MANTISSAS) + size_of_val(&SOFTPLUS) + size_of_val(&WEIBULL);
@@ -224,92 +212,16 @@ mod tests {
     }
 
     #[test]
-    fn exp_has_a_relative_error_below_2_1e_7() {
-        let error = |x: f32, exact: f64| (f64::from(exp(x)) / exact.exp() - 1.0).abs();
-        let found = largest_error(-87.0, 88.0, error);
-        assert!(found <= 2.1e-7, "{found:e}");
+    fn beyond_their_ranges_kernels_are_clamped() {
         assert_eq!(exp(-1e30), exp(-87.0));
-    }
-
-    #[test]
-    fn one_minus_exp_has_a_relative_error_below_4e_7() {
-        let error = |x: f32, exact: f64| {
-            let exact = -(-exact).exp_m1();
-            (f64::from(one_minus_exp(x)) - exact).abs() / exact.max(1e-30)
-        };
-        let found = largest_error(1e-9, 8.0, error);
-        assert!(found <= 4e-7, "{found:e}");
-        assert_eq!(one_minus_exp(0.0), 0.0);
-        assert!((one_minus_exp(50.0) - 1.0).abs() < 4e-4);
-    }
-
-    #[test]
-    fn short_lag_response_has_a_relative_error_below_5e_7() {
-        let error = |x: f32, exact: f64| {
-            let exact = -(-exact).exp_m1();
-            (f64::from(short_lag_response(x)) - exact).abs() / exact.max(1e-30)
-        };
-        let found = largest_error(1e-9, 1.25, error);
-        assert!(found <= 5e-7, "{found:e}");
-        assert_eq!(short_lag_response(0.0), 0.0);
-    }
-
-    #[test]
-    fn square_roots_have_a_relative_error_of_0_to_plus_5e_5() {
-        for scale in [-122, -60, -1, 0, 1, 2, 33, 126] {
-            let power = 2_f64.powi(scale);
-            let error = |x: f32, exact: f64| {
-                let excess = f64::from(square_root(x)) / exact.sqrt() - 1.0;
-                if excess >= 0.0 { excess } else { f64::NAN }
-            };
-            let found = largest_error(power, 2.0 * power, error);
-            assert!(found <= 5e-5, "{found:e} at 2^{scale}");
-        }
+        assert_eq!(softplus(-1e30), softplus(-87.0));
+        assert_eq!(softplus(1e30), (1e30, 1.0));
+        assert_eq!((weibull(-1e30), weibull(1e30)), (weibull(-15.0), weibull(3.0)));
+        assert_eq!((one_minus_exp(0.0), short_lag_response(0.0)), (0.0, 0.0));
         assert_eq!(square_root(0.0), 0.0);
         assert!(square_root(1e-40) < 1e-18);
-    }
-
-    #[test]
-    fn ln_is_within_its_bound() {
-        for scale in [-120, -24, -3, -1, 0, 1, 5, 90] {
-            let power = 2_f64.powi(scale);
-            let error = |x: f32, exact: f64| {
-                let exact = exact.ln();
-                (f64::from(ln(x)) - exact).abs() - 1e-7 * exact.abs()
-            };
-            let found = largest_error(power, 2.0 * power, error);
-            assert!(found <= 1.5e-7, "{found:e} at 2^{scale}");
-        }
         for least in [0.0, 1e-45, 1e-40, 1e-38] {
             assert!((-88.1..-87.2).contains(&ln(least)), "{least:e}: {}", ln(least));
         }
-    }
-
-    #[test]
-    fn softplus_and_its_slope_are_within_their_bounds() {
-        let error = |x: f32, exact: f64| {
-            let expected = exact.max(0.0) + (-exact.abs()).exp().ln_1p();
-            let slope = 1.0 / (1.0 + (-exact).exp());
-            let (value, steepness) = softplus(x);
-            let relative = (f64::from(value) - expected).abs() / expected;
-            let absolute = (f64::from(value) - expected).abs() - 1e-7 * exact.max(0.0);
-            (relative / 2e-5).max(absolute / 2e-6).max((f64::from(steepness) - slope).abs() / 2e-5)
-        };
-        let found = largest_error(-87.0, 60.0, error);
-        assert!(found <= 1.0, "{found} of the bounds");
-        assert_eq!(softplus(-1e30), softplus(-87.0));
-        assert_eq!(softplus(1e30), (1e30, 1.0));
-    }
-
-    #[test]
-    fn weibull_is_within_its_bound() {
-        let error = |x: f32, exact: f64| {
-            let expected = -(-exact.exp()).exp_m1();
-            (f64::from(weibull(x)) - expected).abs() / expected
-        };
-        let found = largest_error(-15.0, 2.999_999, error);
-        assert!(found <= 2e-6, "{found:e}");
-        assert_eq!(weibull(-1e30), weibull(-15.0));
-        assert_eq!(weibull(1e30), weibull(3.0));
     }
 }

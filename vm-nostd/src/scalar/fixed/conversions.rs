@@ -1,0 +1,98 @@
+//! Values with a unit: paths in Q23.9 µm, quantities in Q16.16, forces in whole mN.
+
+use super::factor::{Factor, QUANTITY_UNITS, UNITS, nearest};
+use super::number::Fixed;
+use crate::scalar::Conversions;
+use crate::scalar::constant::Constant;
+use crate::summed::summed_numbers;
+use fixed::types::{I16F16, I23F9};
+
+/// Units of [`I23F9`] in a metre.
+const PATH_UNITS: f64 = 512e6;
+
+summed_numbers! {
+    Fixed: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
+    I16F16: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
+    I23F9: |number| number.to_bits().cast_unsigned(),
+        |word| Some(Self::from_bits(word.cast_signed()));
+}
+
+/// The number, exactly.
+pub(super) fn value(number: Fixed) -> f64 {
+    f64::from(number.to_bits()) / UNITS
+}
+
+/// The nearest path length to one in m, saturated.
+pub(super) fn nearest_path(metres: f64) -> I23F9 {
+    I23F9::from_bits(nearest(metres * PATH_UNITS))
+}
+
+/// A path length in m, exactly.
+pub(super) fn metres(path: I23F9) -> f64 {
+    f64::from(path.to_bits()) / PATH_UNITS
+}
+
+/// A quantity, exactly.
+pub(super) fn quantity_value(quantity: I16F16) -> f64 {
+    f64::from(quantity.to_bits()) / QUANTITY_UNITS
+}
+
+impl Conversions for Fixed {
+    const ARITHMETIC: u32 = 3;
+    const LARGEST_COEFFICIENT: f64 = 60.0;
+    const MAXIMAL_FORCES: (f64, f64) = (1.0, 16e3);
+    const FORCE_STEP: f64 = 1e-3;
+    const LONGEST_PATH: f64 = 4.19;
+
+    fn path_is_finite(_: I23F9) -> bool {
+        true
+    }
+    fn per_metre(value: f64) -> Factor {
+        Factor::new(value * UNITS / PATH_UNITS)
+    }
+    #[inline(always)]
+    fn path_difference(path: I23F9, other: I23F9, per_metre: &Factor) -> Self {
+        Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
+    }
+    fn path_factor(metres: f64) -> Factor {
+        Factor::new(metres * PATH_UNITS / UNITS)
+    }
+    fn lengthened(path: I23F9, by: Self, factor: &Factor) -> I23F9 {
+        path.saturating_add(I23F9::from_bits(factor.times(by.to_bits())))
+    }
+
+    #[inline(always)]
+    fn quantity_constant(constant: &Constant) -> I16F16 {
+        constant.quantity
+    }
+    fn quantity_is_finite(_: I16F16) -> bool {
+        true
+    }
+    fn per_quantity(value: f64) -> Factor {
+        Factor::new(value * UNITS / QUANTITY_UNITS)
+    }
+    fn of_quantity(quantity: I16F16, per_unit: &Factor) -> Self {
+        Self::from_bits(per_unit.times(quantity.to_bits()))
+    }
+    fn quantity_factor(value: f64) -> Factor {
+        Factor::new(value * QUANTITY_UNITS / UNITS)
+    }
+    fn as_quantity(self, quantity_factor: &Factor) -> I16F16 {
+        I16F16::from_bits(quantity_factor.times(self.to_bits()))
+    }
+
+    fn force_factor(newtons: f64) -> Factor {
+        Factor::new(newtons * 1e3 / UNITS)
+    }
+    fn force(self, force_factor: &Factor) -> i32 {
+        force_factor.times(self.to_bits())
+    }
+    fn per_newton(value: f64) -> Factor {
+        Factor::new(value * UNITS * 1e-3)
+    }
+    fn of_force(force: i32, per_newton: &Factor) -> Self {
+        Self::from_bits(per_newton.times(force))
+    }
+}
