@@ -1,5 +1,6 @@
 //! Tests across files.
 
+mod kernels;
 mod oracle;
 mod saturation;
 mod words;
