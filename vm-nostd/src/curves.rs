@@ -1,8 +1,8 @@
 //! Curves of a built muscle: what its equations give at rates and lengths of the caller's choice.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, velocities};
 use crate::equations::activation_frequency;
-use crate::equations::force_length::{self, OptimalLength};
+use crate::equations::force_length::{self, Distance};
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::tendon::Tendon;
 use crate::fiber::Fiber;
@@ -35,7 +35,6 @@ use crate::scalar::Scalar;
 #[derive(Clone, Copy, Debug)]
 pub struct Curves<'a, S: Scalar, const N: usize> {
     domain: &'a Domain<S>,
-    optimal_length: &'a OptimalLength<S>,
     fibers: &'a [Fiber<S>; N],
     parallel: &'a Parallel<S>,
     compression: &'a Compression<S>,
@@ -47,7 +46,6 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     pub fn curves(&self) -> Curves<'_, S, N> {
         Curves {
             domain: &self.domain,
-            optimal_length: &self.optimal_length,
             fibers: &self.fibers,
             parallel: &self.parallel,
             compression: &self.compression,
@@ -82,7 +80,7 @@ impl<'a, S: Scalar, const N: usize> Curves<'a, S, N> {
     /// [`MuscleParams::fibers`](crate::MuscleParams::fibers); none beyond the last.
     pub fn fiber(&self, index: usize) -> Option<FiberCurves<'a, S>> {
         let fiber = self.fibers.get(index)?;
-        Some(FiberCurves { domain: self.domain, optimal_length: self.optimal_length, fiber })
+        Some(FiberCurves { domain: self.domain, fiber })
     }
 }
 
@@ -91,7 +89,6 @@ impl<'a, S: Scalar, const N: usize> Curves<'a, S, N> {
 #[derive(Clone, Copy, Debug)]
 pub struct FiberCurves<'a, S: Scalar> {
     domain: &'a Domain<S>,
-    optimal_length: &'a OptimalLength<S>,
     fiber: &'a Fiber<S>,
 }
 
@@ -103,7 +100,7 @@ impl<S: Scalar> FiberCurves<'_, S> {
     /// Force-length relation FL, 0..1.
     #[doc(alias = "FL")]
     pub fn force_length(&self, fascicle_length: S) -> S {
-        let distance = self.optimal_length.distance(self.clamped(fascicle_length));
+        let distance = Distance::new(self.clamped(fascicle_length));
         let [value] = force_length::at([&self.fiber.force_length], &distance);
         value
     }
@@ -112,7 +109,7 @@ impl<S: Scalar> FiberCurves<'_, S> {
     /// L_ce0/s, positive when lengthening, and clamped to ±60.
     #[doc(alias = "FV")]
     pub fn force_velocity(&self, fascicle_length: S, fascicle_velocity: S) -> S {
-        let (velocity, _) = self.domain.fascicle_velocity.clip(fascicle_velocity);
+        let (velocity, _) = velocities::<S>().clip(fascicle_velocity);
         let curve = self.fiber.force_velocity.at(self.clamped(fascicle_length), S::ZERO);
         if self.fiber.force_velocity.is_beyond(velocity) {
             return S::ZERO;

@@ -3,18 +3,30 @@
 use crate::io::Input;
 use crate::params::MuscleParams;
 use crate::params::limits::{MAXIMUM_SPEED, MAXIMUM_STIMULATION_FREQUENCY};
+use crate::scalar::constant::Constant;
 use crate::scalar::{Arithmetic, Scalar};
 use crate::status::Status;
 use crate::summed::summed;
 use crate::tick::admission::admit_one;
-use crate::tick::range::Range;
+use crate::tick::range::{Range, share};
+
+/// Greatest stimulation frequency, pps.
+const HIGHEST: Constant = Constant::new(MAXIMUM_STIMULATION_FREQUENCY);
+/// No stimulation, pps.
+const NONE: Constant = Constant::new(0.0);
+/// Greatest fascicle speed, L_ce0/s.
+pub(crate) const FASTEST: Constant = Constant::new(MAXIMUM_SPEED);
+
+/// State range of the fascicle velocity, L_ce0/s.
+pub(crate) fn velocities<S: Scalar>() -> Range<S> {
+    let fastest = S::constant(&FASTEST);
+    Range { least: -fastest, most: fastest }
+}
 
 summed! {
     /// Validity ranges of a muscle's inputs and ranges of its state.
     #[derive(Clone, Copy, Debug)]
     pub(crate) struct Domain<S: Scalar> {
-        pub(crate) activation: Range<S>,
-        pub(crate) stimulation_frequency: Range<S::Quantity>,
         pub(crate) path_length: Range<S::PathLength>,
         /// Validity range of the filaments' equations, L_ce0.
         pub(crate) filaments: Range<S>,
@@ -24,8 +36,6 @@ summed! {
         /// State range of the length, L_ce0: from the lower end of the validity range to the length of
         /// a muscle at rest on the longest path, plus a margin.
         pub(crate) fascicle_length: Range<S>,
-        /// State range of the velocity, L_ce0/s.
-        pub(crate) fascicle_velocity: Range<S>,
         /// Intersection of `fascicle_length` and `filaments`, L_ce0: lengths that raise no flag.
         unflagged: Range<S>,
     }
@@ -48,8 +58,6 @@ impl<S: Scalar> Domain<S> {
         let paths = params.path_domain_within(S::LONGEST_PATH, S::LARGEST_COEFFICIENT);
         let longest = params.longest_fascicles(paths.1);
         Self {
-            activation: Range::new((0.0, 1.0), S::from_f64),
-            stimulation_frequency: Range::new((0.0, MAXIMUM_STIMULATION_FREQUENCY), S::quantity),
             path_length: Range::new(paths, S::path_length),
             filaments: Range::new(filaments, S::from_f64),
             shortening_velocity: S::from_f64(Arithmetic::max(
@@ -57,7 +65,6 @@ impl<S: Scalar> Domain<S> {
                 -MAXIMUM_SPEED,
             )),
             fascicle_length: Range::new((filaments.0, longest), S::from_f64),
-            fascicle_velocity: Range::new((-MAXIMUM_SPEED, MAXIMUM_SPEED), S::from_f64),
             unflagged: Range::new(
                 (filaments.0, Arithmetic::min(filaments.1, longest)),
                 S::from_f64,
@@ -79,17 +86,18 @@ impl<S: Scalar> Domain<S> {
     pub(crate) fn raises_no_flag(&self, length: S, velocity: S) -> bool {
         self.unflagged.contains(length)
             && velocity > self.shortening_velocity
-            && velocity < self.fascicle_velocity.most
+            && velocity < S::constant(&FASTEST)
     }
 
     /// Clamps the input to the validity ranges and returns the flags. A path length that is NaN is
     /// replaced by `path_before`.
     pub(crate) fn admit(&self, input: Input<S>, path_before: S::PathLength) -> (Input<S>, Status) {
-        let (activation, a) = admit_one(&self.activation, input.activation, S::ZERO, S::is_finite);
+        let (activation, a) = admit_one(&share(), input.activation, S::ZERO, S::is_finite);
+        let none = S::quantity_constant(&NONE);
         let (stimulation_frequency, f) = admit_one(
-            &self.stimulation_frequency,
+            &Range { least: none, most: S::quantity_constant(&HIGHEST) },
             input.stimulation_frequency,
-            self.stimulation_frequency.least,
+            none,
             S::quantity_is_finite,
         );
         let (path_length, p) =

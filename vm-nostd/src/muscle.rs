@@ -1,8 +1,8 @@
 //! A muscle: its coefficients, computed once from the parameters, and the tick.
 
 use crate::checksum::Checksum;
-use crate::domain::Domain;
-use crate::equations::force_length::{self, OptimalLength};
+use crate::domain::{Domain, velocities};
+use crate::equations::force_length::{self, Distance};
 use crate::equations::force_velocity;
 use crate::equations::passive::{Compression, Parallel};
 use crate::equations::yielding::Speed;
@@ -46,7 +46,6 @@ summed! {
     pub struct Muscle<S: Scalar, R: Recruitment<S, N>, const N: usize> {
         pub(crate) domain: Domain<S>,
         pub(crate) recruitment: R::Coefficients,
-        pub(crate) optimal_length: OptimalLength<S>,
         pub(crate) fibers: [Fiber<S>; N],
         pub(crate) parallel: Parallel<S>,
         pub(crate) compression: Compression<S>,
@@ -93,7 +92,6 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         Ok(Self {
             domain: Domain::new(params),
             recruitment: R::Coefficients::new(params, units, step)?,
-            optimal_length: OptimalLength::new(),
             fibers: params.fibers.map(|fiber| Fiber::new(&fiber, params.fascicle_domain(), step)),
             parallel: Parallel::new(&elements.parallel, params.maximum_fascicle_length(), step),
             compression: Compression::new(&elements.compression, step),
@@ -199,7 +197,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let length = State::<S, R, N>::SAVED_WORDS;
         let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
         let tendon_extension = saved.number(S::is_finite)?;
-        let speeds = &self.domain.fascicle_velocity;
+        let speeds = velocities::<S>();
         let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
         let path_length = saved.path::<S>(&self.domain.path_length)?;
         let rounding = S::from_f64(ROUNDING);
@@ -307,7 +305,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             state.tendon_extension = tendon.extension(state.path_length, length);
             state.fascicle_velocity = S::ZERO;
         }
-        let speeds = &self.domain.fascicle_velocity;
+        let speeds = velocities::<S>();
         let (velocity, _) = speeds.clip(state.fascicle_velocity);
         state.fascicle_velocity = velocity;
         let mut status = Status::empty();
@@ -350,7 +348,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         valid: S,
     ) -> Contractile<'_, S, N> {
         let Moment { fascicle_length: middle, travel, .. } = *moment;
-        let distance = self.optimal_length.distance(valid);
+        let distance = Distance::new(valid);
         let (parallel, parallel_slope) = self.parallel.at(middle);
         let (compression, compression_slope) = self.compression.at(middle);
         let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, moment);

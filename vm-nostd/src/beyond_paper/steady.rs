@@ -12,9 +12,9 @@
 
 use crate::domain::Domain;
 use crate::equations::activation_frequency::{self, ActivationFrequency};
-use crate::equations::force_length::{self, ForceLength, OptimalLength};
+use crate::equations::force_length::{self, Distance, ForceLength};
 use crate::equations::passive::{Compression, Parallel};
-use crate::equations::sag::SagParams;
+use crate::equations::sag::FIRING;
 use crate::equations::tendon::{Tendon, TendonInverse};
 use crate::error::ParameterError;
 use crate::io::Input;
@@ -60,13 +60,11 @@ summed! {
     #[derive(Clone, Copy, Debug)]
     pub struct SteadyFes<S: Scalar, const N: usize> {
         domain: Domain<S>,
-        optimal_length: OptimalLength<S>,
         fibers: [SteadyFiber<S>; N],
         parallel: Parallel<S>,
         compression: Compression<S>,
         tendon: Tendon<S>,
         tendon_inverse: TendonInverse<S>,
-        firing: S,
         rounding: S,
         /// Rounding tolerance of a force in N or mN: half a step.
         rounding_of_force: S,
@@ -149,7 +147,6 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let (fascicle, tendon) = (params.fascicle_length, params.tendon_length);
         Ok(Self {
             domain: Domain::new(params),
-            optimal_length: OptimalLength::new(),
             fibers: params.fibers.map(|fiber| {
                 let t = &fiber.fiber_type;
                 let sag = t.sag.map_or([1.0; 2], |sag| [sag.resting_level, sag.firing_level]);
@@ -165,7 +162,6 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
             compression: Compression::new(&elements.compression, step),
             tendon: Tendon::new(&elements.tendon, fascicle, tendon, step),
             tendon_inverse: TendonInverse::new(&elements.tendon, fascicle, tendon),
-            firing: S::from_f64(SagParams::FIRING),
             rounding: S::from_f64(ROUNDING),
             rounding_of_force: S::from_f64(ROUNDING + 0.5 * S::FORCE_STEP / newtons),
             promised: S::from_f64(PROMISED),
@@ -319,12 +315,12 @@ impl<S: Scalar, const N: usize> SteadyFes<S, N> {
         let (length, _) = self.domain.fascicle_length.clip(fascicle_length);
         let (inside, _) = self.domain.filaments.clip(length);
         let reciprocal = inside.reciprocal();
-        let distance = self.optimal_length.distance(inside);
+        let distance = Distance::new(inside);
         let (mut active, mut compressed) = (S::ZERO, S::ZERO);
         for fiber in &self.fibers {
             let per = &fiber.per_half_force_frequency;
             let frequency = S::of_quantity(input.stimulation_frequency, per);
-            let sag = fiber.sag[usize::from(frequency > self.firing)];
+            let sag = fiber.sag[usize::from(frequency > S::constant(&FIRING))];
             let [curve] = activation_frequency::curves([&fiber.activation], reciprocal);
             let activation = curve.at(frequency * sag);
             let share = fiber.fraction * activation;

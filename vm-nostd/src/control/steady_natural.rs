@@ -5,7 +5,7 @@
 //! The wanted force gives the tendon's length and with it the fascicles'; U follows by bisection.
 
 use crate::equations::activation_frequency::curves;
-use crate::equations::force_length;
+use crate::equations::force_length::{self, Distance};
 use crate::equations::tendon::TendonInverse;
 use crate::error::ParameterError;
 use crate::io::Input;
@@ -66,7 +66,7 @@ impl<S: Scalar, const N: usize> SteadyNatural<S, N> {
         let length = tendon.fascicle_length(input.path_length, extension);
         let (length, _) = m.domain.fascicle_length.clip(length);
         let (inside, _) = m.domain.filaments.clip(length);
-        let distance = m.optimal_length.distance(inside);
+        let distance = Distance::new(inside);
         let reciprocal = inside.reciprocal();
         let types = m.fibers.each_ref();
         let overlaps = force_length::at(types.map(|t| &t.force_length), &distance);

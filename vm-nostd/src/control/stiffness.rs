@@ -6,7 +6,7 @@
 //! series: dF_se/dL_mt = k_f k_t/(k_f + k_t), with k_f = dF/dL and the tendon's stiffness k_t.
 
 use crate::equations::activation_frequency::curves;
-use crate::equations::force_length;
+use crate::equations::force_length::{self, Distance};
 use crate::muscle::Muscle;
 use crate::recruitment::{
     IntramuscularFes, LumpedState, NaturalContinuous, Recruitment, RecruitmentTick,
@@ -76,7 +76,7 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
     /// F0 of the fascicles at a length, of what is active at the state's (both L_ce0).
     fn pull_at(&self, state: &State<S, R, N>, now: S, length: S) -> S {
         let (length, _) = self.domain.filaments.clip(length);
-        let [here, there] = [now, length].map(|at| self.optimal_length.distance(at));
+        let [here, there] = [now, length].map(Distance::new);
         let [reciprocal, moved] = [now, length].map(S::reciprocal);
         let types = self.fibers.each_ref();
         let [lengths, longer] =

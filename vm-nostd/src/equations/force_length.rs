@@ -5,6 +5,7 @@
 //! share one logarithm and one reciprocal, and no power of L is computed in a tick.
 
 use crate::error::{ParameterError, within};
+use crate::scalar::constant::Constant;
 use crate::scalar::float::one_minus_exp;
 use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::summed::summed;
@@ -91,14 +92,7 @@ impl ForceLengthParams {
 /// Lower bound of |L - 1| in FL, L_ce0: at 0 its logarithm diverges and the slope of |L - 1|^rho
 /// has a cusp. At this bound FL is within 1e-4 of 1, within 2e-9 for the paper's types.
 const NEAREST: f64 = 1.0 / 524_288.0;
-
-summed! {
-    /// The optimal length, 1 L_ce0.
-    #[derive(Clone, Copy, Debug)]
-    pub(crate) struct OptimalLength<S> {
-        nearest: S,
-    }
-}
+const NEAREST_DISTANCE: Constant = Constant::new(NEAREST);
 
 /// Distance of the fascicles from their optimal length.
 #[derive(Clone, Copy, Debug)]
@@ -109,15 +103,12 @@ pub(crate) struct Distance<S: Scalar> {
     logarithm: S,
 }
 
-impl<S: Scalar> OptimalLength<S> {
-    pub(crate) fn new() -> Self {
-        Self { nearest: S::from_f64(NEAREST) }
-    }
-
-    /// Distance of a fascicle length (L_ce0) from the optimal length.
-    pub(crate) fn distance(&self, fascicle_length: S) -> Distance<S> {
+impl<S: Scalar> Distance<S> {
+    /// Of a fascicle length (L_ce0).
+    pub(crate) fn new(fascicle_length: S) -> Self {
         let offset = fascicle_length - S::ONE;
-        Distance { offset, logarithm: offset.abs().max(self.nearest).ln() }
+        let nearest = S::constant(&NEAREST_DISTANCE);
+        Self { offset, logarithm: offset.abs().max(nearest).ln() }
     }
 }
 
@@ -167,9 +158,9 @@ pub(crate) mod tests {
 
     /// FL of a type as a function of length.
     pub(crate) fn force_length<S: Scalar>(params: &ForceLengthParams) -> impl Fn(S) -> S {
-        let (optimal, relation) = (OptimalLength::new(), ForceLength::new(params, FASCICLE_DOMAIN));
+        let relation = ForceLength::new(params, FASCICLE_DOMAIN);
         move |length| {
-            let [value] = at([&relation], &optimal.distance(length));
+            let [value] = at([&relation], &Distance::new(length));
             value
         }
     }

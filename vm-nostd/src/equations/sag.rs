@@ -3,6 +3,7 @@
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::cold::cold_path;
+use crate::scalar::constant::Constant;
 use crate::summed::summed;
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
@@ -24,15 +25,15 @@ pub struct SagParams {
 }
 
 impl SagParams {
-    /// Frequency above which a type counts as firing, f0.5.
-    pub(crate) const FIRING: f64 = 0.1;
-
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         within("sag.resting_level", self.resting_level, 0.01, 10.0)?;
         within("sag.firing_level", self.firing_level, 0.01, 10.0)?;
         within("sag.time_constant", self.time_constant, 0.01, 10.0)
     }
 }
+
+/// Frequency above which a type counts as firing, f0.5.
+pub(crate) const FIRING: Constant = Constant::new(0.1);
 
 summed! {
     /// Sag of one fibre type; S is 1 for a type without sag.

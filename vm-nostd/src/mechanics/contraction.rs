@@ -16,15 +16,16 @@
 
 use super::decay;
 use super::elementwise::{sum, zip};
+use crate::domain::FASTEST;
 use crate::equations::force_velocity::{Branch, VelocityCurve};
 use crate::equations::tendon::Tendon;
 use crate::equations::yielding::{SPREAD, Speed};
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
 use crate::params::class::{Class, Substeps};
-use crate::params::limits::MAXIMUM_SPEED;
 use crate::recruitment::RecruitmentTick;
 use crate::scalar::cold::cold_path;
+use crate::scalar::constant::Constant;
 use crate::scalar::float::{square_root, tangent};
 use crate::scalar::{Arithmetic, Scalar};
 use crate::summed::summed;
@@ -42,9 +43,11 @@ const MOST_SUBSTEPS: u8 = 40;
 /// this bound and pi/2 errors after a force jump grow again.
 const FASTEST_RINGING: f64 = 1.1;
 /// Largest residual at a predicted velocity at which the mechanics count as settled, F0.
-const SETTLED: f64 = 0.5;
+const SETTLED: Constant = Constant::new(0.5);
 /// Lower bound on dF_ce/dV, which is a divisor, F0 s/L_ce0: far below any viscosity.
-const LEAST_STEEPNESS: f64 = 1e-5;
+const LEAST_STEEPNESS: Constant = Constant::new(1e-5);
+/// Reciprocal of the unit of the variance of speed.
+const PER_SPREAD: Constant = Constant::new(1.0 / SPREAD);
 
 /// Motion of the fascicles since the tick's start.
 #[derive(Clone, Copy, Debug)]
@@ -97,20 +100,12 @@ summed! {
         tick: S::Part,
         /// Ticks per second.
         tick_rate: S::Factor,
-        /// Largest speed, L_ce0/s.
-        speed: S,
         /// V_max of the slowest type, L_ce0/s.
         slowest: S,
-        /// Reciprocal of the unit of the variance of speed.
-        per_spread: S::Part,
-        settled: S,
-        least_steepness: S,
     }
 
     valid: |contraction| {
-        let positive = [contraction.viscosity, contraction.speed, contraction.least_steepness];
-        (1..=MOST_SUBSTEPS).contains(&contraction.substeps)
-            && positive.into_iter().all(|value| value > S::ZERO)
+        (1..=MOST_SUBSTEPS).contains(&contraction.substeps) && contraction.viscosity > S::ZERO
     }
 }
 
@@ -202,11 +197,7 @@ impl<S: Scalar> Contraction<S> {
             substeps,
             tick: S::part(step.seconds()),
             tick_rate: S::factor(1.0 / step.seconds()),
-            speed: S::from_f64(MAXIMUM_SPEED),
             slowest: S::from_f64(params.shortening_velocity()),
-            per_spread: S::part(1.0 / SPREAD),
-            settled: S::from_f64(SETTLED),
-            least_steepness: S::from_f64(LEAST_STEEPNESS),
         }
     }
 
@@ -239,20 +230,21 @@ impl<S: Scalar> Contraction<S> {
         let mut time = S::MINUS_HALF + self.substep.half;
         let (mut largest_residual, mut velocity_limited) = (S::ZERO, false);
         let (mut mean, mut square) = (S::ZERO, S::ZERO);
+        let per_spread = S::part_constant(&PER_SPREAD);
         for _ in 0..self.substeps {
             let substep = tick.substep::<R>(&mut motion, time, &mut velocity_limited);
             largest_residual = largest_residual.max(substep.residual.abs());
             mean = mean + substep.distance;
-            square = square + substep.distance * substep.speed.portion(self.per_spread);
+            square = square + substep.distance * substep.speed.portion(per_spread);
             time = time + self.substep.half + self.substep.half;
         }
         TickResult {
             motion,
             speed: Speed {
                 mean,
-                variance: (square - mean * mean.portion(self.per_spread)).max(S::ZERO),
+                variance: (square - mean * mean.portion(per_spread)).max(S::ZERO),
             },
-            settled: largest_residual <= self.settled,
+            settled: largest_residual <= S::constant(&SETTLED),
             velocity_limited,
         }
     }
@@ -355,13 +347,14 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
 
         let residual = constant + slope * velocity + force;
         let line = slope + (viscosity + elastic);
-        let steepness = steepness.max(c.least_steepness);
+        let steepness = steepness.max(S::constant(&LEAST_STEEPNESS));
         let balance = residual.hyperbola_root(line, steepness, half_curvature, inertia, viscosity);
         let mut middle = (velocity + balance.root).of_sign(!lengthening);
-        let in_range = middle.abs() < c.speed;
+        let fastest = S::constant(&FASTEST);
+        let in_range = middle.abs() < fastest;
         if !in_range {
             cold_path();
-            middle = if lengthening { c.speed } else { -c.speed };
+            middle = if lengthening { fastest } else { -fastest };
             *velocity_limited = true;
         }
 

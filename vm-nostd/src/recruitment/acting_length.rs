@@ -7,6 +7,7 @@ use super::mode::Moment;
 use crate::params::FiberType;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
+use crate::scalar::constant::Constant;
 use crate::summed::{FromWords, summed};
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
@@ -73,7 +74,7 @@ impl<S: Scalar> ActingLength<S> for FascicleLength {
 }
 
 /// Lower bound of 1 - Af, a divisor. Near Af = 1, n_f has hardly any effect on Af.
-const LEAST_INACTIVE: f64 = 1e-4;
+const LEAST_INACTIVE: Constant = Constant::new(1e-4);
 
 summed! {
     /// Coefficients of the effective length.
@@ -81,7 +82,6 @@ summed! {
     pub struct EffectiveLengthCoefficients<S: Scalar> {
         /// dt/T_L: increase of 1/x² in half a tick for an inactive unit, x = L - L_eff.
         rate: S,
-        least_inactive: S,
         /// Range of L_eff, in which n_f is defined.
         range: Range<S>,
     }
@@ -96,7 +96,6 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {
         EffectiveLengthCoefficients {
             rate: S::from_f64(step.seconds() / fiber_type.effective_length_time),
-            least_inactive: S::from_f64(LEAST_INACTIVE),
             range: Range::new(domain, S::from_f64),
         }
     }
@@ -126,7 +125,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         moment: &Moment<S, N>,
     ) -> Option<S> {
         let before = S::of(*state);
-        let inactive = (S::ONE - activation).max(coefficients.least_inactive);
+        let inactive = (S::ONE - activation).max(S::constant(&LEAST_INACTIVE));
         let quarter = moment.travel.half().half();
         // x at the start of a half-tick, and the share 1 - 1/√grown by which it decreases.
         let step = |length: S, from: S| {

@@ -10,7 +10,7 @@
 use super::firing::Firing;
 use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use crate::equations::sag::SagParams;
+use crate::equations::sag::FIRING;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
@@ -46,8 +46,6 @@ summed! {
     pub struct Coefficients<S: Scalar, const N: usize> {
         rise: Lag<S>,
         fall: Lag<S>,
-        /// Frequency above which a type counts as firing, f0.5.
-        firing: S,
         units: [Firing<S>; N],
     }
 }
@@ -65,7 +63,7 @@ impl<S: Scalar, const N: usize> Coefficients<S, N> {
 
     /// Steady-state S of a type that fires at a frequency (f0.5).
     pub(crate) fn steady_sag(&self, fiber: &Fiber<S>, frequency: S) -> S {
-        fiber.sag.steady(frequency > self.firing)
+        fiber.sag.steady(frequency > S::constant(&FIRING))
     }
 }
 
@@ -91,12 +89,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             before += fiber.fraction;
             Firing::new(t, threshold)
         });
-        Ok(Self {
-            rise: Lag::new(RISE_TIME, step),
-            fall: Lag::new(FALL_TIME, step),
-            firing: S::from_f64(SagParams::FIRING),
-            units,
-        })
+        Ok(Self { rise: Lag::new(RISE_TIME, step), fall: Lag::new(FALL_TIME, step), units })
     }
 
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
@@ -146,8 +139,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             slowing: state.activities[i].predicted,
             yielding: moment.yieldings[i],
         };
-        let advanced =
-            lumped::advance_all::<S, false, N>(&mut state.fibers, input, moment, self.firing);
+        let advanced = lumped::advance_all::<S, false, N>(&mut state.fibers, input, moment);
         from_fn(|i| {
             let LumpedOutput { activation, .. } = advanced[i];
             state.activities[i] = state.activities[i].next(activation);

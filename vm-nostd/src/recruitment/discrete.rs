@@ -11,7 +11,7 @@ use super::motor_units::MotorUnits;
 use super::unit::{Activity, advance_sag};
 use crate::equations::activation_frequency;
 use crate::equations::excitation::{self, ExcitationInput};
-use crate::equations::sag::{SagParams, share_above};
+use crate::equations::sag::{FIRING, share_above};
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
@@ -42,8 +42,6 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 summed! {
     #[derive(Clone, Copy, Debug)]
     pub struct Coefficients<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
-        /// Frequency above which a unit counts as firing, f0.5.
-        firing: S,
         units: [Unit<S, A::Coefficients>; UNITS],
         /// Number of units.
         count: usize,
@@ -116,7 +114,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
         // Elements from `count` on are unused.
         let mut all = [first; UNITS];
         all.iter_mut().skip(1).zip(coefficients).for_each(|(place, unit)| *place = unit);
-        Ok(Self { firing: S::from_f64(SagParams::FIRING), units: all, count: units.count() })
+        Ok(Self { units: all, count: units.count() })
     }
 
     fn fits(&self) -> bool {
@@ -196,7 +194,7 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
                 Some(own) => activation_frequency::curves([&fiber.activation], own.reciprocal()),
                 None => [*curve],
             };
-            let firing = share_above(S::of(before), S::of(excited.effective), self.firing);
+            let firing = share_above(S::of(before), S::of(excited.effective), S::constant(&FIRING));
             let sag = advance_sag(fiber, &mut unit_state.sag, firing);
             let frequency = excited.effective_at_middle * (*yieldings * sag);
             let activation = curve.at(frequency);

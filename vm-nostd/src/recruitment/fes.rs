@@ -7,7 +7,6 @@
 
 use super::lumped::{self, LumpedInput, LumpedOutput, LumpedState};
 use super::mode::{Moment, Recruited, Recruitment, RecruitmentTick};
-use crate::equations::sag::SagParams;
 use crate::error::ParameterError;
 use crate::fiber::Fiber;
 use crate::params::MuscleParams;
@@ -36,8 +35,6 @@ impl<S: Scalar, const N: usize> Recruitment<S, N> for IntramuscularFes {
 summed! {
     #[derive(Clone, Copy, Debug)]
     pub struct Coefficients<S: Scalar, const N: usize> {
-        /// f_env above which a type counts as firing, f0.5.
-        firing: S,
         units: [Unit<S>; N],
     }
 }
@@ -79,7 +76,6 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         _step: TimeStep,
     ) -> Result<Self, ParameterError> {
         Ok(Self {
-            firing: S::from_f64(SagParams::FIRING),
             units: params.fibers.map(|fiber| Unit {
                 fraction: S::from_f64(fiber.fraction),
                 per_half_force_frequency: S::per_quantity(
@@ -128,12 +124,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             slowing,
             yielding: moment.yieldings[i],
         };
-        let advanced = lumped::advance_all::<S, true, N>(
-            &mut state.fibers,
-            input_of_type,
-            moment,
-            self.firing,
-        );
+        let advanced = lumped::advance_all::<S, true, N>(&mut state.fibers, input_of_type, moment);
         from_fn(|i| {
             let LumpedOutput { effective, change, activation } = advanced[i];
             let fraction = self.units[i].fraction;

@@ -4,7 +4,7 @@ use super::mode::{Moment, RecruitmentState};
 use super::unit::{Activity, advance_sag};
 use crate::equations::activation_frequency;
 use crate::equations::excitation::{self, ExcitationInput};
-use crate::equations::sag::share_above;
+use crate::equations::sag::{FIRING, share_above};
 use crate::fiber::Fiber;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
@@ -117,27 +117,24 @@ pub(super) fn advance_all<'a, S: Scalar, const STIMULATED: bool, const N: usize>
     states: &'a mut [FiberState<S>; N],
     input: impl Fn(usize, &'a mut FiberState<S>) -> LumpedInput<'a, S>,
     moment: &Moment<S, N>,
-    firing: S,
 ) -> [LumpedOutput<S>; N] {
     if S::SIDE_BY_SIDE {
         let mut index = 0..N;
         let types = states.each_mut().map(|state| input(index.next().unwrap_or(0), state));
-        return advance::<S, STIMULATED, N, N>(types, moment, firing);
+        return advance::<S, STIMULATED, N, N>(types, moment);
     }
     let mut all = [LumpedOutput { effective: S::ZERO, change: S::ZERO, activation: S::ZERO }; N];
     for (index, (one, state)) in all.iter_mut().zip(states).enumerate() {
-        [*one] = advance::<S, STIMULATED, N, 1>([input(index, state)], moment, firing);
+        [*one] = advance::<S, STIMULATED, N, 1>([input(index, state)], moment);
     }
     all
 }
 
-/// Advances some types by one tick, side by side. A type counts as firing above the frequency
-/// `firing` (f0.5). Af and sag depend on f_env if `STIMULATED`, otherwise on f_eff.
+/// Advances some types by one tick, side by side. Af and sag depend on f_env if `STIMULATED`, otherwise on f_eff.
 #[inline(always)]
 fn advance<S: Scalar, const STIMULATED: bool, const N: usize, const SOME: usize>(
     types: [LumpedInput<'_, S>; SOME],
     moment: &Moment<S, N>,
-    firing: S,
 ) -> [LumpedOutput<S>; SOME] {
     let inputs = types.each_ref().map(|t| ExcitationInput {
         excitation: &t.fiber.excitation,
@@ -157,8 +154,8 @@ fn advance<S: Scalar, const STIMULATED: bool, const N: usize, const SOME: usize>
         t.state.intermediate_frequency = excited[i].intermediate;
         t.state.effective_frequency = excited[i].effective;
         let fired = if !STIMULATED {
-            share_above(before, after, firing)
-        } else if t.frequency > firing {
+            share_above(before, after, S::constant(&FIRING))
+        } else if t.frequency > S::constant(&FIRING) {
             S::ONE
         } else {
             S::ZERO
