@@ -10,8 +10,8 @@ use crate::scalar::Scalar;
 use crate::status::Status;
 use crate::summed::summed;
 
-/// Least activation that is worth a pulse. What is left in the lead of a muscle that is no longer
-/// wanted decays for seconds, and would give pulses at the threshold of its electrode all the while.
+/// Least activation that is worth a pulse of a muscle that is no longer wanted. What is left in its
+/// lead decays for seconds, and would give pulses at the threshold of its electrode all the while.
 pub(super) const LEAST_ACTIVATION: f64 = 1e-3;
 
 summed! {
@@ -72,7 +72,7 @@ impl<S: Scalar> CoContraction<S> {
 /// Stimulation of one muscle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stimulated<S> {
-    /// 0, or [`LEAST_ACTIVATION`] to 1.
+    /// 0..1.
     pub(super) activation: S,
     pub(super) status: Status,
     /// No activation holds the torque: it is the greatest.
@@ -102,7 +102,8 @@ impl<S: Scalar, const N: usize> Inverse<S, N> {
         let (wanted, status) = self.steady.nearest_activation(force, path, frequency);
         let ahead = self.lead.step(&mut state.lead, wanted);
         let within = ahead.max(S::ZERO).min(S::ONE);
-        let activation = if within < self.least_activation { S::ZERO } else { within };
+        let is_over = wanted <= S::ZERO && within < self.least_activation;
+        let activation = if is_over { S::ZERO } else { within };
         if let (Some(fatigue), Some(tired)) = (&self.fatigue, &mut state.fatigue) {
             fatigue.advance(tired, activation, frequency);
         }

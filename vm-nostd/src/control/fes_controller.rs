@@ -79,7 +79,8 @@ pub struct Sensors<S: Scalar> {
 /// What is commanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FesCommand<S: Scalar> {
-    /// Stimulation of flexor and extensor, 0 or 0.001 to 1.
+    /// Stimulation of flexor and extensor, 0..1. 0 once less than 0.001 is left of a muscle that is
+    /// no longer wanted.
     pub activations: [S; 2],
     /// The pulse that recruits it; for 0 the greatest that recruits nothing, which need not be
     /// given.
