@@ -23,6 +23,11 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+/** A number with so many decimals; what rounds to zero has no sign. */
+function rounded(value, digits) {
+  return value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1");
+}
+
 /** The drawing surface of a canvas in CSS pixels, cleared. */
 function surface(canvas) {
   const { width, height } = canvas.getBoundingClientRect();
@@ -66,7 +71,7 @@ class Plot {
       const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
       const values = [];
       for (let index = Math.ceil(from / step - 1e-9); index * step <= to + 1e-9 * step; index += 1) {
-        values.push([index * step, (index * step).toFixed(digits).replace(/^-(0\.?0*)$/, "$1")]);
+        values.push([index * step, rounded(index * step, digits)]);
       }
       return values;
     };

@@ -7,6 +7,11 @@ function float(value) {
   return /[.e]/.test(text) ? text : `${text}.0`;
 }
 
+/** The fraction of fast fibres, in hundredths as its slider's. */
+function fastFraction(muscle) {
+  return Math.round(100 * (1 - muscle.slow)) / 100;
+}
+
 /** The muscle as a file for `vm run --muscle`. */
 function muscleFile(muscle) {
   const size = muscle.max_isometric_force_n !== undefined ? "max_isometric_force_n" : "mass_g";
@@ -21,11 +26,11 @@ name = "${muscle.name}"
 ${lines.join("\n")}
 recruitment_saturation = ${float(muscle.recruitment_saturation)}
 coefficients = "${muscle.coefficients}"
-${fiber("slow", muscle.slow)}${fiber("fast", 1 - muscle.slow)}`;
+${fiber("slow", muscle.slow)}${fiber("fast", fastFraction(muscle))}`;
 }
 
-/** The muscle and a second of its present input as a program. */
-function program(muscle, quantities, input) {
+/** The muscle and the first second of its input from rest as a program. */
+function program(muscle, quantities, input, pattern) {
   const preset = muscle.coefficients.replaceAll("-", "_");
   const type = {
     continuous: "ContinuousMuscle::<S, 2>",
@@ -38,15 +43,18 @@ function program(muscle, quantities, input) {
   const build = muscle.mode.startsWith("discrete")
     ? `build_with_units(&params, &MotorUnits::new(&params, [UnitSizes::Default(${muscle.units}); 2])?, `
     : "build(&params, ";
+  const numbers = [input.activation, input.frequency, input.path, quantities.fascicle].map(float);
+  const [activation, frequency, path] = PATTERNS_IN_RUST[pattern](...numbers);
+  const time = pattern === "hold" ? "_" : "time";
   return `use vm_nostd::{${preset}::{ELEMENTS, FAST, SLOW}, *};
 type S = ${scalar};
 fn main() -> Result<(), ParameterError> {
-    let fibers = [(${float(muscle.slow)}, SLOW), (${float(1 - muscle.slow)}, FAST)].map(|(fraction, fiber_type)| FiberParams { fraction, fiber_type });
+    let fibers = [(${float(muscle.slow)}, SLOW), (${float(fastFraction(muscle))}, FAST)].map(|(fraction, fiber_type)| FiberParams { fraction, fiber_type });
     let params = MuscleParams { mass: ${float(quantities.mass)}, fascicle_length: ${float(quantities.fascicle)}, tendon_length: ${float(quantities.tendon)}, max_path_length: ${float(quantities.maxPath)}, recruitment_saturation: ${float(muscle.recruitment_saturation)}, class: Class::${accuracy}, elements: ELEMENTS, fibers };
     let muscle = ${type}::${build}TimeStep::MILLISECOND)?;
     let mut state = muscle.rest(S::path_length(${float(input.path)}))?;
-    let input = Input { activation: S::from_f64(${float(input.activation)}), path_length: S::path_length(${float(input.path)}), stimulation_frequency: S::quantity(${float(input.frequency)}) };
-    (0..1000).for_each(|_| println!("{} N", S::newtons(muscle.step(&mut state, input).force)));
+    let input = |${time}: f64| Input { activation: S::from_f64(${activation}), path_length: S::path_length(${path}), stimulation_frequency: S::quantity(${frequency}) };
+    (1..=1000).for_each(|tick| println!("{} N", S::newtons(muscle.step(&mut state, input(f64::from(tick) * 1e-3)).force)));
     Ok(()) }
 `;
 }

@@ -33,6 +33,22 @@ const PATTERNS = {
   },
 };
 
+/** The first second of the same in Rust, of the sliders' values and L_ce0 (m): U, pps and path (m). */
+const PATTERNS_IN_RUST = {
+  hold: (activation, frequency, path) => [activation, frequency, path],
+  ramp: (activation, frequency, path) => [`${activation} * (time / ${RAMP}.0)`, frequency, path],
+  train: (activation, frequency, path) => {
+    const on = (value) => `if time < ${TRAIN}.0 { ${value} } else { 0.0 }`;
+    return [on(activation), on(frequency), path];
+  },
+  gait: (activation, frequency, path, fascicle) => {
+    const phase = `std::f64::consts::TAU * time / ${STRIDE}`;
+    const burst = `(${phase} - std::f64::consts::FRAC_PI_6).sin().max(0.0)`;
+    const swing = `${path} + ${EXCURSION} * (${phase}).sin() * ${fascicle}`;
+    return [`${activation} * ${burst}.powi(2)`, frequency, swing];
+  },
+};
+
 /** The path of the slider that the muscles are on, m. */
 function followed(current, wanted, fascicle) {
   const most = PATH_SPEED * fascicle * TICK;

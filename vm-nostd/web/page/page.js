@@ -5,8 +5,9 @@
 const KEPT_TICKS = 60_000;
 /** Most ticks that are made up for in a frame: a page in the background does not catch up. */
 const MOST_TICKS = 100;
-/** A screen reader is told the numbers as often as this, ms. */
+/** A screen reader is told the force of a run as often as this, and all numbers so soon after, ms. */
 const SPOKEN_EVERY = 3000;
+const SPOKEN_AFTER = 500;
 
 const data = JSON.parse(element("data").textContent);
 
@@ -19,7 +20,10 @@ function track(muscle, force) {
 const run = {
   /** Ticks since the rest; index 0 of the rings is the rest itself. */
   tick: 0,
-  running: true,
+  /** Nothing moves by itself for who wants less motion. */
+  running: !matchMedia("(prefers-reduced-motion: reduce)").matches,
+  /** Whether what is drawn is no more what it was. */
+  stale: true,
   /** The slider's path that the muscles are on, m. */
   path: 0,
   inputs: ["activation", "path", "frequency"].map(() => new Float64Array(KEPT_TICKS)),
@@ -69,6 +73,7 @@ function restart(path = sliders().path) {
   element("refusal").textContent = refusal;
   showCycles(data, muscle);
   showSliders();
+  run.stale = true;
 }
 
 /** Steps all muscles by one tick. */
@@ -91,6 +96,7 @@ function tick() {
 
 function advance(ticks) {
   for (let count = 0; count < ticks; count += 1) tick();
+  run.stale ||= ticks > 0;
 }
 
 /** Points of a ring in the last seconds, thinned to about one a pixel. */
@@ -123,7 +129,7 @@ function draw() {
       { title: "fascicle length, L0", lines: lines(1), smallest: 0.05 },
       { title: "fascicle velocity, L0/s", lines: lines(2), smallest: 0.2 },
       {
-        title: "activation of each type, F0: slow —, fast - -",
+        title: "activation, F0: slow —, fast - -",
         lines: [...lines(3), ...lines(4).map(dashed)],
         smallest: 0.1,
         from: 0,
@@ -145,10 +151,17 @@ function draw() {
   ], [velocity, relative]);
   const [activation, path] = run.inputs.map((ring) => ring[place]);
   const status = model.status(kept.status[place]);
-  return showNumbers({ time: now, activation, path, force, relative, length, velocity, slow, fast, status });
+  const numbers = { time: now, activation, path, force, relative, length, velocity, slow, fast, status };
+  return showNumbers(numbers, run.running);
+}
+
+function showRunning() {
+  element("run").textContent = run.running ? "Pause" : "Run";
+  run.stale = true;
 }
 
 function legend() {
+  run.stale = true;
   showLegend(
     run.tracks.flatMap((kept, slot) => {
       if (!kept) return [];
@@ -167,7 +180,6 @@ function keep() {
   }
   const kept = track(run.tracks[0].muscle, run.quantities.force);
   run.tracks[slot] = kept;
-  kept.rest = run.inputs[1][0];
   const item = document.createElement("li");
   const { name, mode, arithmetic } = kept.muscle;
   const remove = document.createElement("button");
@@ -217,7 +229,10 @@ function recorded() {
 function copyRun() {
   const rows = recorded();
   if (rows) copy(runFile(rows), "Run");
-  else element("copied").textContent = `Only ${KEPT_TICKS * TICK} s can be saved: restart at rest.`;
+  else {
+    element("text").hidden = true;
+    element("copied").textContent = `Only ${KEPT_TICKS * TICK} s can be saved: restart at rest.`;
+  }
 }
 
 /** A muscle of the list: on the path on which fascicles and tendon have their optimal lengths. */
@@ -251,19 +266,22 @@ function listen() {
   on("core", "change", () => showCycles(data, run.tracks[0].muscle));
   on("run", "click", () => {
     run.running = !run.running;
-    element("run").textContent = run.running ? "Pause" : "Run";
-    element("run").setAttribute("aria-pressed", String(run.running));
+    showRunning();
   });
   on("advance", "click", () => advance(100));
   on("restart", "click", () => restart());
   on("keep", "click", keep);
   on("copy-toml", "click", () => copy(muscleFile(run.tracks[0].muscle), "Muscle TOML"));
   on("copy-rust", "click", () => {
-    const { activation, frequency } = sliders();
-    const input = { activation, frequency, path: sliders().path };
-    copy(program(run.tracks[0].muscle, run.quantities, input), "Rust");
+    const { muscle } = run.tracks[0];
+    copy(program(muscle, run.quantities, sliders(), element("pattern").value), "Rust");
   });
   on("copy-run", "click", copyRun);
+  const redraw = () => {
+    run.stale = true;
+  };
+  addEventListener("resize", redraw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   element("controls").addEventListener("submit", (event) => event.preventDefault());
 }
 
@@ -272,14 +290,16 @@ function loop() {
   let last = performance.now();
   let owed = 0;
   let spoken = last;
+  let sentence = "";
   const frame = (time) => {
     owed = Math.min(owed + (time - last), MOST_TICKS);
     last = time;
     const ticks = Math.floor(owed);
     owed -= ticks;
     if (run.running) advance(ticks);
-    const sentence = draw();
-    if (time - spoken > SPOKEN_EVERY) {
+    if (run.stale) sentence = draw();
+    run.stale = false;
+    if (time - spoken > (run.running ? SPOKEN_EVERY : SPOKEN_AFTER)) {
       spoken = time;
       if (element("spoken").textContent !== sentence) element("spoken").textContent = sentence;
     }
@@ -293,6 +313,7 @@ async function start() {
   fillLists(data);
   listen();
   choose();
+  showRunning();
   loop();
 }
 

@@ -110,18 +110,21 @@ function showCycles(data, muscle) {
   element("cycles").textContent = `${row.typical} cycles per tick${most} (${name}, ${what})`;
 }
 
-/** The table of numbers; returns a sentence with the same for screen readers. */
-function showNumbers(now) {
+/**
+ * The table of numbers; returns a sentence for screen readers: with all of it while the run stands,
+ * else with what is read before the next comes.
+ */
+function showNumbers(now, running) {
   const rows = [
     ["Time", `${now.time.toFixed(3)} s`],
     ["Activation U", now.activation.toFixed(3)],
     ["Path length", `${(100 * now.path).toFixed(3)} cm`],
-    ["Force", `${now.force.toFixed(3)} N`],
-    ["Force", `${now.relative.toFixed(4)} F0`],
+    ["Force", `${rounded(now.force, 3)} N`],
+    ["Force", `${rounded(now.relative, 4)} F0`],
     ["Fascicle length", `${now.length.toFixed(4)} L0`],
-    ["Fascicle velocity", `${now.velocity.toFixed(4)} L0/s`],
-    ["Slow fibres", `${now.slow.toFixed(4)} F0`],
-    ["Fast fibres", `${now.fast.toFixed(4)} F0`],
+    ["Fascicle velocity", `${rounded(now.velocity, 4)} L0/s`],
+    ["Slow fibres", `${rounded(now.slow, 4)} F0`],
+    ["Fast fibres", `${rounded(now.fast, 4)} F0`],
     ["Status", now.status.replaceAll("|", ", ")],
   ];
   const body = element("numbers");
@@ -140,6 +143,8 @@ function showNumbers(now) {
   rows.forEach(([, text], index) => {
     body.rows[index].cells[1].textContent = text;
   });
+  const status = now.status === "ok" ? "" : `, ${now.status.replaceAll("|", ", ")}`;
+  if (running) return `Force ${rounded(now.force, 1)} N${status}`;
   return rows.map(([name, text]) => `${name} ${text}`).join(", ");
 }
 
