@@ -10,7 +10,7 @@ use crate::reference::{Input, Mode, Muscle, Simulation};
 use crate::trace::InputTrace;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use stepped::{Fatiguing, Stepped};
+use stepped::{Fatiguing, Slope, Stepped};
 use vm_nostd as vm;
 
 /// Arithmetic of a run.
@@ -186,8 +186,14 @@ impl Rest<'_> {
         with_type_count!(
             self.muscle,
             N => match mode {
-                Mode::Continuous => self.of_mode::<S, vm::NaturalContinuous, N>(mode, &()),
-                Mode::Fes => self.of_mode::<S, vm::IntramuscularFes, N>(mode, &()),
+                Mode::Continuous => {
+                    let slope = vm::Muscle::stiffness;
+                    self.of_mode::<S, vm::NaturalContinuous, N>(mode, &(), Some(slope))
+                }
+                Mode::Fes => {
+                    let slope = vm::Muscle::stiffness;
+                    self.of_mode::<S, vm::IntramuscularFes, N>(mode, &(), Some(slope))
+                }
                 Mode::Discrete => self.discrete::<S, vm::FascicleLength, N>(mode),
                 Mode::DiscreteEffectiveLength => self.discrete::<S, vm::EffectiveLength, N>(mode),
             },
@@ -213,13 +219,14 @@ impl Rest<'_> {
         mode: Mode,
     ) -> Result<Box<dyn Running>, RunError> {
         let units = model_muscle::motor_units::<N, UNITS>(self.muscle)?;
-        self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(mode, &units)
+        self.of_mode::<S, vm::NaturalDiscrete<A, UNITS>, N>(mode, &units, None)
     }
 
     fn of_mode<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize>(
         &self,
         mode: Mode,
         units: &R::Units,
+        slope: Option<Slope<S, R, N>>,
     ) -> Result<Box<dyn Running>, RunError> {
         let step = vm::TimeStep::from_seconds(self.time_step)?;
         let class = self.class.of_model();
@@ -235,7 +242,9 @@ impl Rest<'_> {
             })
             .transpose()?;
         let f0 = params.max_isometric_force();
-        Ok(Box::new(Stepped { muscle: Arc::new(muscle), state, fatiguing, f0 }))
+        let f0_per_length = f0 / params.fascicle_length;
+        let muscle = Arc::new(muscle);
+        Ok(Box::new(Stepped { muscle, state, fatiguing, slope, f0, f0_per_length }))
     }
 }
 
@@ -255,6 +264,10 @@ impl Running for Simulation {
     fn watch(&self, _: &mut dyn FnMut(u64)) {}
 
     fn save(&self) -> Option<Vec<u64>> {
+        None
+    }
+
+    fn stiffness(&self) -> Option<f64> {
         None
     }
 

@@ -21,7 +21,7 @@ mod write;
 
 pub use error::FitError;
 pub use keys::Key;
-pub use outcome::{CONFIRMED, Confirmed, Fit, TrialFit, fit};
+pub use outcome::{CONFIRMED, Confirmed, Fit, TrialFit, fit, fit_until};
 pub use page::{PageError, page};
 pub use parameters::{Parameter, Place, Prior, applied};
 pub use priors::{Basis, Spread, spread};

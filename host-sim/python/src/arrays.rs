@@ -2,7 +2,7 @@
 
 use crate::errors::{refused, wrong_type};
 use numpy::prelude::*;
-use numpy::{PyReadonlyArray1, PyUntypedArray};
+use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArray};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
@@ -18,6 +18,10 @@ impl Column {
     /// A column from a number or a one-dimensional array of real, finite numbers.
     pub fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         let numpy = value.py().import("numpy")?;
+        // The array of it has a number where it has none.
+        if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
+            return Err(refused(name, "masked", "must have a number in every row"));
+        }
         // Ragged lists have no array.
         let array =
             numpy.call_method1("asarray", (value,)).map_err(|_| not_numbers(name, value))?;
@@ -86,18 +90,33 @@ pub fn rows<const N: usize>(columns: [(&str, &Column); N]) -> PyResult<Option<us
     Ok(first.map(|(_, length)| length))
 }
 
+/// Rows between two looks for Ctrl-C.
+const CHUNK: usize = 1000;
+
+/// What is made of each row, without the interpreter's lock.
+pub fn each_row<T: Send>(
+    py: Python<'_>,
+    count: usize,
+    mut of: impl FnMut(usize) -> T + Send,
+) -> PyResult<Vec<T>> {
+    let mut made = Vec::with_capacity(count);
+    for from in (0..count).step_by(CHUNK) {
+        py.detach(|| made.extend((from..count.min(from + CHUNK)).map(&mut of)));
+        py.check_signals()?;
+    }
+    Ok(made)
+}
+
 /// A function of columns, row by row: a number if all columns are, else an array.
 pub fn mapped<'py, const N: usize>(
     py: Python<'py>,
     columns: [(&str, &Column); N],
-    of: impl Fn([f64; N]) -> f64,
+    of: impl Fn([f64; N]) -> f64 + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
     let at = |row| of(columns.map(|(_, column)| column.at(row)));
     match rows(columns)? {
         None => at(0).into_bound_py_any(py),
-        Some(count) => {
-            (0..count).map(at).collect::<Vec<f64>>().into_pyarray(py).into_bound_py_any(py)
-        }
+        Some(count) => each_row(py, count, at)?.into_pyarray(py).into_bound_py_any(py),
     }
 }
 
@@ -105,7 +124,7 @@ pub fn mapped<'py, const N: usize>(
 pub fn mapped_with_flags<'py, const N: usize>(
     py: Python<'py>,
     columns: [(&str, &Column); N],
-    of: impl Fn([f64; N]) -> (f64, u16),
+    of: impl Fn([f64; N]) -> (f64, u16) + Sync,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let at = |row| of(columns.map(|(_, column)| column.at(row)));
     match rows(columns)? {
@@ -114,9 +133,31 @@ pub fn mapped_with_flags<'py, const N: usize>(
             Ok((value.into_bound_py_any(py)?, flags.into_bound_py_any(py)?))
         }
         Some(count) => {
-            let (values, flags): (Vec<f64>, Vec<u16>) = (0..count).map(at).unzip();
+            let (values, flags): (Vec<f64>, Vec<u16>) =
+                each_row(py, count, at)?.into_iter().unzip();
             let (values, flags) = (values.into_pyarray(py), flags.into_pyarray(py));
             Ok((values.into_any(), flags.into_any()))
         }
     }
+}
+
+/// The numbers of an array, checked as those of a run are; a copy.
+#[pyfunction]
+pub fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    match Column::read(name, value)? {
+        Column::Each(numbers) => Ok(numbers.into_pyarray(value.py())),
+        Column::Constant(number) => Err(refused(name, &number.to_string(), "must be an array")),
+    }
+}
+
+/// Saved words; a copy.
+pub fn saved(words: &Bound<'_, PyAny>) -> PyResult<Vec<u64>> {
+    let Ok(array) = words.cast::<PyArray1<u64>>() else {
+        let found = words.cast::<PyUntypedArray>().map_or_else(
+            |_| words.get_type().to_string(),
+            |array| format!("{} in {} dimensions", array.dtype(), array.ndim()),
+        );
+        return Err(wrong_type("words", &found, "the uint64 array that save() gave"));
+    };
+    Ok(array.readonly().as_array().to_vec())
 }

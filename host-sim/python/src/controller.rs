@@ -1,13 +1,13 @@
 //! FES controller of a joint's angle or torque.
 
 use crate::antagonists::{Antagonists, time_step, words};
-use crate::arrays::number;
+use crate::arrays::{number, saved};
 use crate::choices::{self, with_count, with_scalar};
 use crate::errors::{self, refused};
 use crate::joint::Joint;
 use crate::recruitment_curve::RecruitmentCurve;
 use crate::results::{COMMAND, CONTROL_STATUS, STATUS};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use vm_nostd::control::{
     FesCommand, FesController as Coefficients, FesControllerParams, FesControllerState, GainParams,
@@ -260,8 +260,8 @@ impl FesController {
     }
 
     /// Takes saved words back; those of another controller are refused.
-    fn restore(&mut self, words: PyReadonlyArray1<'_, u64>) -> PyResult<()> {
-        let words = words.as_array().to_vec();
+    fn restore(&mut self, words: &Bound<'_, PyAny>) -> PyResult<()> {
+        let words = saved(words)?;
         self.controlling.restore(&words).map_err(|problem| errors::restore(words.len(), &problem))
     }
 }

@@ -67,20 +67,20 @@ impl Curves {
     fn of_type<'py, const N: usize>(
         &self,
         py: Python<'py>,
-        (curve, fiber): (Curve, usize),
+        (curve, fiber): (Curve, isize),
         arguments: [(&str, &Bound<'py, PyAny>); N],
     ) -> PyResult<Bound<'py, PyAny>> {
-        if fiber >= self.types {
+        let Some(index) = usize::try_from(fiber).ok().filter(|&index| index < self.types) else {
             let limit = format!("must be 0 to {}", self.types - 1);
             return Err(refused("fiber", &fiber.to_string(), &limit));
-        }
+        };
         let columns: Vec<Column> = arguments
             .iter()
             .map(|(name, value)| Column::read(name, value))
             .collect::<PyResult<_>>()?;
         let named = std::array::from_fn(|index| (arguments[index].0, &columns[index]));
         mapped(py, named, |x: [f64; N]| {
-            self.built.at(curve, fiber, [x[0], x.get(1).copied().unwrap_or(0.0)])
+            self.built.at(curve, index, [x[0], x.get(1).copied().unwrap_or(0.0)])
         })
     }
 }
@@ -91,7 +91,7 @@ impl Curves {
     fn force_length<'py>(
         &self,
         py: Python<'py>,
-        fiber: usize,
+        fiber: isize,
         fascicle_length_l0: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let arguments = [("fascicle_length_l0", fascicle_length_l0)];
@@ -103,7 +103,7 @@ impl Curves {
     fn force_velocity<'py>(
         &self,
         py: Python<'py>,
-        fiber: usize,
+        fiber: isize,
         fascicle_length_l0: &Bound<'py, PyAny>,
         fascicle_velocity_l0_per_s: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -119,7 +119,7 @@ impl Curves {
     fn activation_frequency<'py>(
         &self,
         py: Python<'py>,
-        fiber: usize,
+        fiber: isize,
         fascicle_length_l0: &Bound<'py, PyAny>,
         frequency_f05: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {

@@ -1,5 +1,6 @@
 //! What is refused, as Python exceptions: `ParameterError` with field, value and limit.
 
+use crate::arguments::{ARGUMENTS, in_unit};
 use host_sim::engine::RunError;
 use host_sim::fit::FitError;
 use host_sim::muscle_file::MuscleFileError;
@@ -8,6 +9,7 @@ use pyo3::exceptions::{PyOSError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
+use vm_nostd::Limit;
 use vm_nostd::control::JointError;
 
 static PARAMETER_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
@@ -37,31 +39,37 @@ pub fn wrong_type(field: &str, found: &str, wanted: &str) -> PyErr {
     PyTypeError::new_err(format!("{field} is {found}: must be {wanted}"))
 }
 
-/// An argument that the library names without its unit.
-fn argument(field: &str) -> &str {
-    match field {
-        "path_length" => "path_length_m",
-        "time_step" => "time_step_s",
-        other => other,
-    }
-}
-
 /// A value that `vm-nostd` refuses.
 pub fn parameter(error: vm_nostd::ParameterError) -> PyErr {
-    let field = match error.fiber {
-        Some(fiber) => format!("fibers[{fiber}].{}", error.field),
-        None => argument(error.field).to_owned(),
-    };
-    refused(&field, &error.value.to_string(), &error.limit.to_string())
+    let place = error.fiber.map(|fiber| format!("fibers[{fiber}]."));
+    argument(&place.unwrap_or_default(), &error)
 }
 
 /// A joint, controller or prosthesis that `vm-nostd` refuses.
 pub fn joint(JointError { muscle, error }: JointError) -> PyErr {
-    let field = match muscle {
-        Some(muscle) => format!("muscles[{muscle}].{}", error.field),
-        None => argument(error.field).to_owned(),
+    let place = muscle.map(|muscle| format!("muscles[{muscle}]."));
+    argument(&place.unwrap_or_default(), &error)
+}
+
+/// A refused argument, by its name and in its unit.
+fn argument(place: &str, error: &vm_nostd::ParameterError) -> PyErr {
+    // A derived quantity with a unit of its own follows the field after a colon.
+    let (field, derived) = match error.field.split_once(": ") {
+        Some((field, derived)) => (field, format!(": {derived}")),
+        None => (error.field, String::new()),
     };
-    refused(&field, &error.value.to_string(), &error.limit.to_string())
+    let known = ARGUMENTS.iter().find(|(name, ..)| *name == field);
+    let (name, scale) = known.map_or((field, 1.0), |&(_, name, scale)| (name, scale));
+    let scale = if derived.is_empty() { scale } else { 1.0 };
+    let limit = match error.limit {
+        Limit::Within { least, most } => {
+            let [least, most] = [least, most].map(|bound| in_unit(bound, scale));
+            Limit::Within { least, most }
+        }
+        other => other,
+    };
+    let value = in_unit(error.value, scale).to_string();
+    refused(&format!("{place}{name}{derived}"), &value, &limit.to_string())
 }
 
 /// Saved words that are not taken back.
@@ -101,7 +109,9 @@ pub fn muscle_file(error: MuscleFileError) -> PyErr {
             refused("muscle", &path.display().to_string(), &limit)
         }
         error @ MuscleFileError::Read { .. } => PyOSError::new_err(error.to_string()),
-        error @ MuscleFileError::Parse { .. } => PyValueError::new_err(error.to_string()),
+        MuscleFileError::Parse { path, message } => {
+            refused("muscle", &path.display().to_string(), &message)
+        }
     }
 }
 
@@ -115,6 +125,9 @@ pub fn fit(error: FitError) -> PyErr {
         }
         FitError::Recording(error @ TraceError::File { .. }) => {
             PyOSError::new_err(error.to_string())
+        }
+        FitError::Trials { path, problem } => {
+            refused("trials", &path.display().to_string(), &problem)
         }
         FitError::Start { source, .. } => run(source),
         error => PyValueError::new_err(error.to_string()),

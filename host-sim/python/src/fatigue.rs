@@ -1,9 +1,9 @@
 //! Fatigue and recovery: fitness, a factor on force.
 
-use crate::arrays::{Column, number, rows};
+use crate::arrays::{Column, each_row, number, rows, saved};
 use crate::choices::{self, with_scalar};
 use crate::errors::{parameter, refused, restore};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use vm_nostd::{Fatigue as Coefficients, FatigueParams, FatigueState, Scalar, TimeStep};
@@ -125,7 +125,7 @@ impl Fatigue {
         Ok(self.tiring.advance(activation, frequency))
     }
 
-    /// Advances one tick per row; the fitness after each.
+    /// Advances one tick per row; the fitness after each. If it is interrupted, the state stays.
     #[pyo3(signature = (activation, stimulation_frequency_pps=None))]
     fn run<'py>(
         &mut self,
@@ -142,11 +142,14 @@ impl Fatigue {
         let count = rows(columns)?.ok_or_else(|| {
             refused("activation", "a number", "one input at least must be an array")
         })?;
+        let before = self.tiring.save();
         let tiring = &mut self.tiring;
-        let fitness: Vec<f64> = py.detach(|| {
-            (0..count).map(|row| tiring.advance(activation.at(row), frequency.at(row))).collect()
-        });
-        Ok(fitness.into_pyarray(py))
+        let fitness =
+            each_row(py, count, |row| tiring.advance(activation.at(row), frequency.at(row)));
+        if fitness.is_err() {
+            self.tiring.restore(&before).map_err(|problem| restore(before.len(), &problem))?;
+        }
+        Ok(fitness?.into_pyarray(py))
     }
 
     /// The state as words, with a fingerprint.
@@ -155,8 +158,8 @@ impl Fatigue {
     }
 
     /// Takes saved words back; words of other fatigue are refused.
-    fn restore(&mut self, words: PyReadonlyArray1<'_, u64>) -> PyResult<()> {
-        let words = words.as_array().to_vec();
+    fn restore(&mut self, words: &Bound<'_, PyAny>) -> PyResult<()> {
+        let words = saved(words)?;
         self.tiring.restore(&words).map_err(|problem| restore(words.len(), &problem))
     }
 }

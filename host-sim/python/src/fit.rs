@@ -4,11 +4,14 @@ use crate::errors;
 use crate::muscle::Muscle;
 use crate::results::{ESTIMATE, TRIAL};
 use crate::source::table;
-use host_sim::fit::{CONFIRMED, Fit as Found, Search, Trials, fit as fit_muscle, fitted_file};
+use host_sim::fit::{CONFIRMED, Fit as Found, Search, Trials, fit_until, fitted_file};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// A fitted muscle with the uncertainty of its parameters. From `fit`.
 #[pyclass(module = "vm_nostd", frozen)]
@@ -16,6 +19,25 @@ pub struct Fit {
     found: Found,
     /// The fitted muscle's file.
     text: String,
+}
+
+/// How often Ctrl-C is looked for.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Works in another thread, without the interpreter's lock. Ctrl-C sets `stop`.
+fn interruptible<T: Send>(
+    py: Python<'_>,
+    stop: &AtomicBool,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    std::thread::scope(|scope| {
+        let working = scope.spawn(work);
+        while !working.is_finished() {
+            py.detach(|| std::thread::park_timeout(LOOK));
+            py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+        }
+        Ok(working.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
 }
 
 /// Fits a muscle to the recordings of a list: a dict, or the path of a file.
@@ -26,12 +48,15 @@ pub fn fit(
     muscle: &Bound<'_, Muscle>,
     trials: &Bound<'_, PyAny>,
     folder: PathBuf,
-    starts: u16,
-    seed: u64,
+    starts: i64,
+    seed: i64,
 ) -> PyResult<Fit> {
     if !(1..=1000).contains(&starts) {
         return Err(errors::refused("starts", &starts.to_string(), "must be 1 to 1000"));
     }
+    let Ok(seed) = u64::try_from(seed) else {
+        return Err(errors::refused("seed", &seed.to_string(), "must be at least 0"));
+    };
     let start = &muscle.get().start;
     let trials = if let Ok(dict) = trials.cast::<PyDict>() {
         let text = toml::to_string(&table("trials", dict)?).map_err(|error| {
@@ -42,10 +67,12 @@ pub fn fit(
         Trials::read(&trials.extract::<PathBuf>()?, &folder, &start.named)
     }
     .map_err(errors::fit)?;
-    let search = Search { starts: starts.into(), seed };
-    let found = py
-        .detach(|| fit_muscle(&start.named, start.keep_force, trials, &search, &CONFIRMED))
-        .map_err(errors::fit)?;
+    let search = Search { starts: starts as usize, seed };
+    let stop = Arc::default();
+    let found = interruptible(py, &stop, || {
+        fit_until(&start.named, start.keep_force, trials, &search, &CONFIRMED, &stop)
+    })?
+    .map_err(errors::fit)?;
     let origin = format!("Fitted by vm_nostd.fit, {starts} starts, seed {seed}.");
     let text = fitted_file(&start.table, &found, &origin);
     Ok(Fit { found, text })

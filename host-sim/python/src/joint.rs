@@ -6,6 +6,7 @@ use crate::errors::{self, refused};
 use crate::muscle::Muscle;
 use crate::results::{JOINT_STATUS, POSTURE};
 use host_sim::model_muscle;
+use host_sim::reference::Muscle as Parameters;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -96,6 +97,8 @@ trait Built: Send + Sync {
     fn posture(&self, angles: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>, u8);
     /// Torques (N m) of forces (F0).
     fn torques(&self, angles: &[f64], forces: &[f64]) -> Vec<f64>;
+    /// Stiffnesses (N m/rad) of forces (F0) and muscles' stiffnesses (F0/L_ce0).
+    fn stiffnesses(&self, angles: &[f64], forces: &[f64], stiffnesses: &[f64]) -> Vec<f64>;
 }
 
 impl<S: Scalar, const J: usize, const M: usize> Built for Coefficients<S, J, M> {
@@ -111,6 +114,14 @@ impl<S: Scalar, const J: usize, const M: usize> Built for Coefficients<S, J, M> 
         let forces = std::array::from_fn(|m| S::from_f64(forces[m]));
         Self::torques(self, &posture, &forces).map(S::quantity_value).to_vec()
     }
+
+    fn stiffnesses(&self, angles: &[f64], forces: &[f64], stiffnesses: &[f64]) -> Vec<f64> {
+        let posture = Self::posture(self, std::array::from_fn(|j| S::from_f64(angles[j])));
+        let forces = std::array::from_fn(|m| S::from_f64(forces[m]));
+        let stiffnesses = std::array::from_fn(|m| S::from_f64(stiffnesses[m]));
+        let of_joints = Self::stiffnesses(self, &posture, &forces, &stiffnesses);
+        of_joints.map(S::quantity_value).to_vec()
+    }
 }
 
 /// One to six muscles about one or two joints. angle_ranges_rad: least and greatest angle (rad) of
@@ -125,7 +136,6 @@ pub struct Joint {
     pub muscles: Vec<Py<Muscle>>,
     /// Their paths.
     pub paths: Vec<JointPath>,
-    forces: Vec<f64>,
 }
 
 /// A muscle as a joint takes it.
@@ -166,8 +176,24 @@ impl Joint {
                 }
             )
         ))?;
-        let forces = muscles.iter().map(|muscle| muscle.get().parameters().f0()).collect();
-        Ok(Self { built, ranges, muscles, paths, forces })
+        Ok(Self { built, ranges, muscles, paths })
+    }
+
+    /// Numbers of the muscles over what each is relative to.
+    fn relative(
+        &self,
+        field: &str,
+        given: &[f64],
+        whole: impl Fn(&Parameters) -> f64,
+    ) -> PyResult<Vec<f64>> {
+        if given.len() != self.muscles.len() {
+            let limit = format!("must be {}, one for each muscle", self.muscles.len());
+            return Err(refused(field, &format!("{} numbers", given.len()), &limit));
+        }
+        let muscles = given.iter().zip(&self.muscles);
+        muscles
+            .map(|(&given, muscle)| Ok(number(field, given)? / whole(muscle.get().parameters())))
+            .collect()
     }
 
     fn angles(&self, given: &[f64]) -> PyResult<()> {
@@ -274,14 +300,24 @@ impl Joint {
         forces_n: Vec<f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.angles(&angles_rad)?;
-        if forces_n.len() != self.forces.len() {
-            let limit = format!("must be {}, one for each muscle", self.forces.len());
-            return Err(refused("forces_n", &format!("{} forces", forces_n.len()), &limit));
-        }
-        let forces = forces_n.iter().zip(&self.forces);
-        let relative: Vec<f64> = forces
-            .map(|(&force, f0)| number("forces_n", force).map(|force| force / f0))
-            .collect::<PyResult<_>>()?;
-        Ok(PyArray1::from_vec(py, self.built.torques(&angles_rad, &relative)))
+        let forces = self.relative("forces_n", &forces_n, Parameters::f0)?;
+        Ok(PyArray1::from_vec(py, self.built.torques(&angles_rad, &forces)))
+    }
+
+    /// Static stiffness about each joint (N m/rad): the torque that comes back by angle, from the
+    /// muscles' tendon forces (N) and stiffnesses (N/m, `State.stiffness_n_per_m`) at the joints'
+    /// angles (rad). Negative where the posture is unstable.
+    fn stiffnesses_nm_per_rad<'py>(
+        &self,
+        py: Python<'py>,
+        angles_rad: Vec<f64>,
+        forces_n: Vec<f64>,
+        stiffnesses_n_per_m: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.angles(&angles_rad)?;
+        let forces = self.relative("forces_n", &forces_n, Parameters::f0)?;
+        let per_length = |muscle: &Parameters| muscle.f0() / muscle.L_ce0;
+        let slopes = self.relative("stiffnesses_n_per_m", &stiffnesses_n_per_m, per_length)?;
+        Ok(PyArray1::from_vec(py, self.built.stiffnesses(&angles_rad, &forces, &slopes)))
     }
 }

@@ -4,6 +4,7 @@
 //! runs release the interpreter's lock. Names have units.
 
 mod antagonists;
+mod arguments;
 mod arrays;
 mod choices;
 mod controller;
@@ -27,6 +28,8 @@ use pyo3::prelude::*;
 /// What `vm_nostd` is made of.
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::arrays::numbers;
     #[pymodule_export]
     use super::controller::FesController;
     #[pymodule_export]

@@ -13,7 +13,7 @@ use host_sim::fit::Start;
 use host_sim::model_muscle;
 use host_sim::reference::{Mode, Muscle as Parameters};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use pyo3::types::{PyDict, PyTuple, PyType};
 
 /// A muscle of a name (`muscle_names()`), of a muscle file (TOML, by its path), or of a dict with
 /// the keys of one (`mass_g`, `fascicle_length_cm`, ...).
@@ -266,10 +266,28 @@ impl Muscle {
         self.parameters().fibers.iter().map(|fiber| fiber.fraction).collect()
     }
 
-    /// The muscle as a muscle file, for `vm run --muscle`.
+    /// The muscle as a muscle file, for `vm run --muscle`. Mode, arithmetic and time step are not
+    /// in it.
     fn to_toml(&self) -> PyResult<String> {
-        toml::to_string(&self.start.table)
+        let mut table = self.start.table.clone();
+        if self.class != self.start.named.class {
+            table.insert("class".to_owned(), self.class.name().into());
+        }
+        toml::to_string(&table)
             .map_err(|error| errors::refused("muscle", "table", &error.to_string()))
+    }
+
+    /// What `copy` and `pickle` make the same muscle from.
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let dict = py.import("tomllib")?.call_method1("loads", (self.to_toml()?,))?;
+        let choice = PyDict::new(py);
+        choice.set_item("mode", self.mode())?;
+        choice.set_item("arithmetic", self.arithmetic())?;
+        choice.set_item("time_step_s", self.time_step)?;
+        Ok((PyTuple::new(py, [dict])?, choice))
     }
 
     fn __repr__(&self) -> String {

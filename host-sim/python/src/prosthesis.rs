@@ -1,12 +1,12 @@
 //! A neuromuscular prosthesis: two EMGs to torque and stiffness.
 
 use crate::antagonists::{Antagonists, time_step, words};
-use crate::arrays::number;
+use crate::arrays::{number, saved};
 use crate::choices::{self, with_count, with_scalar};
 use crate::errors;
 use crate::joint::Joint;
 use crate::results::{PROSTHESIS_COMMAND, PROSTHESIS_STATUS, STATUS};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use vm_nostd::Scalar;
 use vm_nostd::control::{
@@ -154,8 +154,8 @@ impl Prosthesis {
     }
 
     /// Takes saved words back; those of another prosthesis are refused.
-    fn restore(&mut self, words: PyReadonlyArray1<'_, u64>) -> PyResult<()> {
-        let words = words.as_array().to_vec();
+    fn restore(&mut self, words: &Bound<'_, PyAny>) -> PyResult<()> {
+        let words = saved(words)?;
         self.moving.restore(&words).map_err(|problem| errors::restore(words.len(), &problem))
     }
 }

@@ -1,11 +1,12 @@
 //! A muscle that is being run.
 
+use crate::arrays::saved;
 use crate::errors;
 use crate::inputs::{input, inputs};
 use crate::results::{OUTPUT, STATUS, TRACE};
-use host_sim::engine::{Row, Running};
+use host_sim::engine::{Row, Running, mode_name};
 use host_sim::reference::{Input, Mode};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 /// Ticks between two looks for Ctrl-C.
@@ -115,13 +116,33 @@ impl State {
         Ok(words.into_pyarray(py))
     }
 
+    /// Static stiffness (N/m): slope of the steady tendon force by the path at the activation that
+    /// the muscle has, negative on the descending limb. In modes "continuous" and "fes" only, and
+    /// not of the reference.
+    fn stiffness_n_per_m(&self) -> PyResult<f64> {
+        self.running.stiffness().ok_or_else(|| match self.mode {
+            Mode::Continuous | Mode::Fes => {
+                errors::refused("arithmetic", "reference", "must be f32, fixed or f64")
+            }
+            mode => errors::refused("mode", mode_name(mode), "must be continuous or fes"),
+        })
+    }
+
     /// Takes saved words back: the same muscle goes on with the same bits, another refuses them.
-    fn restore(&mut self, words: PyReadonlyArray1<'_, u64>) -> PyResult<()> {
-        self.running.restore(&words.as_array().to_vec()).map_err(errors::run)
+    fn restore(&mut self, words: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.running.restore(&saved(words)?).map_err(errors::run)
     }
 
     /// An independent copy.
     fn copy(&self) -> Self {
         Self { running: self.running.fork(), mode: self.mode }
+    }
+
+    fn __copy__(&self) -> Self {
+        self.copy()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy()
     }
 }

@@ -1,9 +1,11 @@
 """Joints, the FES controller and the prosthesis."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
+from conftest import PAPER
 
 import vm_nostd as vm
 
@@ -46,18 +48,75 @@ def test_a_joint_of_one_s_own():
         (lambda: vm.JointPath(1, [0], [[0]], ["bends"]), "action = bends: must be flexes"),
         (lambda: joint.posture([0.1]), "1 angles: must be 2"),
         (lambda: joint.torques_nm([0, math.nan], [0, 0]), "angles_rad = nan: must be finite"),
-        (lambda: joint.torques_nm([0, 0], [1]), "1 forces: must be 2"),
+        (lambda: joint.torques_nm([0, 0], [1]), "1 numbers: must be 2"),
         (lambda: vm.Joint.named("hip"), "name = hip: must be ankle, knee or elbow"),
         (
             lambda: vm.Joint(
                 [(-0.3, 0.3)], [muscle], [vm.JointPath(path_m, [0], [[0.03]], ["flexes"])]
             ),
-            r"muscles\[0\]\.path\.terms: moment arm of a flexor, m",
+            r"muscles\[0\]\.path\.terms_m_per_rad: moment arm of a flexor, m",
         ),
     ]
     for refused, message in refusals:
         with pytest.raises(vm.ParameterError, match=message):
             refused()
+
+
+@pytest.mark.parametrize("arithmetic", MODEL)
+@pytest.mark.parametrize("mode", ["fes", "continuous"])
+def test_the_stiffness_of_a_joint_is_the_slope_of_its_torque(arithmetic, mode):
+    knee = vm.Joint.named("knee", mode=mode, arithmetic=arithmetic)
+    activations = [0.3, 0.2]
+
+    def held(angle):
+        """Forces (N) and stiffnesses (N/m) of the muscles that are held there."""
+        states = [m.at_rest(p) for m, p in zip(knee.muscles, knee.posture([angle]).path_lengths_m)]
+        ticks = np.ones(4000)
+        for state, path, u in zip(states, knee.posture([angle]).path_lengths_m, activations):
+            state.run(u * ticks, path, 40)
+        return [s.output.force_n for s in states], [s.stiffness_n_per_m() for s in states]
+
+    angle, step = 0.5, 0.02
+    forces, stiffnesses = held(angle)
+    (stiffness,) = knee.stiffnesses_nm_per_rad([angle], forces, stiffnesses)
+    ends = [angle - step, angle + step]
+    less, more = [knee.torques_nm([end], held(end)[0])[0] for end in ends]
+    # What comes back is against the motion.
+    assert stiffness == pytest.approx((less - more) / (2 * step), rel=5e-3)
+    assert abs(stiffness) > 1
+    # Muscles that pull without stiffness: the moment arms' slopes.
+    arms = [knee.posture([end]).moment_arms_m[:, 0] for end in ends]
+    slopes = (arms[1] - arms[0]) / (2 * step)
+    (geometric,) = knee.stiffnesses_nm_per_rad([angle], forces, [0, 0])
+    assert geometric == pytest.approx(-float(slopes @ forces), rel=0.02, abs=0.02)
+
+
+def test_stiffness_is_refused_where_there_is_none(paper):
+    knee = vm.Joint.named("knee")
+    for refuse, message in [
+        (lambda: knee.stiffnesses_nm_per_rad([0.8], [1, 1], [1]), "_m = 1 numbers: must be 2"),
+        (lambda: knee.stiffnesses_nm_per_rad([0.8], [1, 1], [1, math.nan]), "nan: must be fin"),
+        (lambda: paper.replace(arithmetic="reference").at_rest(0.16).stiffness_n_per_m(),
+         "arithmetic = reference: must be f32"),
+    ]:  # fmt: skip
+        with pytest.raises(vm.ParameterError, match=message):
+            refuse()
+    units = tomllib.loads(PAPER.read_text())
+    units["fiber"] = [fiber | {"units": 3} for fiber in units["fiber"]]
+    with pytest.raises(vm.ParameterError, match="mode = discrete: must be continuous or fes"):
+        vm.Muscle(units, mode="discrete").at_rest(0.16).stiffness_n_per_m()
+
+
+def test_fatigue_takes_from_the_stiffness_what_it_takes_from_the_force():
+    text = PAPER.read_text()
+    tired = text + "[fatigue]\nT_fat_s = 2\nT_rec_s = 30\nfit_min = 0\nbeta = 0.6\n"
+    of_both = []
+    for muscle in [text, tired]:
+        state = vm.Muscle.from_toml(muscle, mode="fes").at_rest(0.16)
+        state.run(np.ones(2000), 0.16, 30)
+        of_both.append(np.array([state.output.force_n, state.stiffness_n_per_m()]))
+    shares = of_both[1] / of_both[0]
+    assert shares[0] < 0.8 and shares[1] == pytest.approx(shares[0], rel=1e-6)
 
 
 def controller(joint, **changes):
@@ -111,11 +170,14 @@ def test_the_controller_extends_the_knee(arithmetic):
 def test_controllers_are_refused_with_field_value_and_limit():
     knee = vm.Joint.named("knee")
     for changes, message in [
-        ({"gravity_nm": -1}, "limb.gravity = -1: must be between 0 and 200"),
+        ({"gravity_nm": -1}, "gravity_nm = -1: must be between 0 and 200"),
         ({"pulse_width_us": 300}, "= both: give the one that is constant"),
+        ({"pulse_amplitude_ma": 300}, r"\]\.pulse_amplitude_ma = 300: must be between 0.1 and 200"),
+        ({"torque_range_nm": (5, 6)}, r"torque_range_nm\[0\] = 5: must be between -1000 and 0"),
+        ({"expected_lag_s": 0}, "expected_lag_s = 0: must be between 0.001 and 1"),
         ({"measured": "force"}, "measured = force: must be angle or torque"),
         ({"time_step_s": 1}, "time_step_s = 1: must be between"),
-        ({"gain": vm.GainEstimate(0, 0.5, 2, 1)}, "gain.time = 0: must be between 0.1"),
+        ({"gain": vm.GainEstimate(0, 0.5, 2, 1)}, "gain.time_s = 0: must be between 0.1"),
     ]:
         with pytest.raises(vm.ParameterError, match=message):
             controller(knee, **changes)

@@ -74,8 +74,20 @@ def test_recordings_that_are_no_good_are_refused(paper):
     force = recording(paper)
     broken = force.copy()
     broken[7] = np.nan
-    with pytest.raises(vm.ParameterError, match="line 8: 2 = recording: \"nan\" is not a finite"):
+    with pytest.raises(vm.ParameterError, match=r"trial\[0\]\.force\.value\[7\] = nan: must be finite"):
         vm.fit(paper, trials(broken))
+    time_s = np.arange(len(force)) * 1e-3
+    masked = np.ma.array(force, mask=np.isnan(broken))
+    with pytest.raises(vm.ParameterError, match="force.value = masked"):
+        vm.fit(paper, trials(masked))
+    for column in [force * 1j, force > 3, ["a"] * 801]:
+        with pytest.raises(TypeError, match="force.value is .*: must be a real number"):
+            vm.fit(paper, trials(force, force={"time_s": time_s, "value": column}))
+    with pytest.raises(vm.ParameterError, match="force = time_s alone"):
+        vm.fit(paper, trials(force, force={"time_s": time_s}))
+    for trial in ["x", 3, [3]]:
+        with pytest.raises(vm.ParameterError, match="(?s)trials = dict: .*invalid type"):
+            vm.fit(paper, trials(force) | {"trial": trial})
     short = {"time_s": np.arange(5), "value": force[:4]}
     with pytest.raises(vm.ParameterError, match=r"trial\[0\].force = .*: time_s and value must"):
         vm.fit(paper, trials(force, force=short))

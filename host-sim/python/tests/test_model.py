@@ -1,5 +1,10 @@
 """Curves, inverse, fatigue, recruitment curve, saved states and threads."""
 
+import copy
+import pickle
+import signal
+import subprocess
+import sys
 import threading
 import time
 import tomllib
@@ -73,6 +78,75 @@ def test_the_reference_is_copied(paper):
     assert copied.step(1, 0.16, 30) == state.step(1, 0.16, 30)
     copied.step(1, 0.16, 30)
     assert copied.output != state.output
+
+
+@pytest.mark.parametrize("arithmetic", ["f32", "reference"])
+def test_muscles_and_states_are_copied_and_pickled(paper, arithmetic):
+    muscle = paper.replace(arithmetic=arithmetic, accuracy_class="fine", time_step_s=5e-4)
+    force = muscle.run(np.ones(20), 0.16, 30).force_n
+    for same in [copy.copy(muscle), copy.deepcopy(muscle), pickle.loads(pickle.dumps(muscle))]:
+        assert repr(same) == repr(muscle)
+        np.testing.assert_array_equal(same.run(np.ones(20), 0.16, 30).force_n, force)
+    state = muscle.at_rest(0.16)
+    for other in [copy.copy(state), copy.deepcopy(state)]:
+        other.step(1, 0.16, 30)
+        assert other.output != state.output
+
+
+def test_a_file_has_the_accuracy_class(paper):
+    assert "class" not in paper.to_toml()
+    fine = vm.Muscle.from_toml(paper.replace(accuracy_class="fine").to_toml(), mode="fes")
+    assert fine.accuracy_class == "fine"
+
+
+# In a process of its own, to which Ctrl-C comes while it works.
+INTERRUPTED = """
+import sys, time
+import numpy as np
+import vm_nostd as vm
+path = sys.argv[1]
+paper = vm.Muscle(path, mode="fes", arithmetic="f64")
+WORK = {
+    "run": lambda: paper.run(np.broadcast_to(1.0, 3_000_000), 0.16, 30),
+    "steady": lambda: paper.steady().activation_for(np.broadcast_to(50.0, 3_000_000), 0.16, 30),
+    "fatigue": lambda: tired.run(np.broadcast_to(1.0, 30_000_000)),
+    "fit": lambda: vm.fit(
+        paper,
+        {
+            "noise_pct_f0": 1,
+            "trial": [{
+                "name": "tetanus", "role": "fit", "mode": "fes",
+                "force": {"time_s": np.arange(60_000) * 1e-3, "value": 50 + np.sin(np.arange(60_000))},
+                "length": {"constant": 0.16}, "activation": {"constant": 0.5},
+                "stimulation_pps": {"constant": 40},
+            }],
+            "free": [{"name": "max_isometric_force_n", "bounds": [100, 600]}],
+        },
+        starts=1000,
+    ),
+}
+tired = vm.Fatigue.quadriceps(arithmetic="fixed")
+print("works", flush=True)
+try:
+    WORK[sys.argv[2]]()
+except KeyboardInterrupt:
+    assert tired.fitness == 1
+    print("interrupted")
+"""
+
+
+@pytest.mark.parametrize("work", ["run", "steady", "fatigue", "fit"])
+def test_long_work_is_interrupted(work):
+    command = [sys.executable, "-c", INTERRUPTED, str(PAPER), work]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout.readline() == "works\n"
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            # None of it ends in so short a time by itself.
+            assert process.communicate(timeout=8)[0] == "interrupted\n"
+        finally:
+            process.kill()
 
 
 def test_a_run_releases_the_lock(paper):
@@ -154,7 +228,7 @@ def test_fatigue_is_that_of_the_library_s_example(arithmetic):
     assert fatigue.fitness == 1
     with pytest.raises(vm.ParameterError, match="words = "):
         vm.Fatigue(18, 30, 0.1, 0.6, arithmetic=arithmetic).restore(words)
-    with pytest.raises(vm.ParameterError, match="recovery_time = 0: must be between 1 and 1000"):
+    with pytest.raises(vm.ParameterError, match="recovery_time_s = 0: must be between 1 and 1000"):
         vm.Fatigue(18, 0, 0.1, 0.6)
 
 

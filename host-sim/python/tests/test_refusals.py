@@ -1,5 +1,8 @@
 """What is refused, before anything runs: with field, value and limit."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from conftest import DATA
@@ -143,6 +146,65 @@ def test_a_dict_is_refused_with_field_value_and_limit(change, field, value, limi
     assert refused.value.field == field
     assert refused.value.value == pytest.approx(value, nan_ok=True)
     assert limit in refused.value.limit
+
+
+def test_a_dict_without_end_or_of_odd_things_is_refused_by_its_key():
+    # In a process of its own: what went wrong once ended it.
+    code = """
+import itertools
+import numpy as np
+import vm_nostd as vm
+inside, endless = {}, []
+inside["x"] = inside
+endless.append(endless)
+for bad, error in [
+    ({"elements": inside}, vm.ParameterError),
+    ({"fiber": endless}, vm.ParameterError),
+    ({"mass_g": 10**30}, vm.ParameterError),
+    ({"fiber": itertools.count()}, TypeError),
+    ({"fiber": {1, 2}}, TypeError),
+]:
+    (key,) = bad
+    try:
+        vm.Muscle(bad)
+    except error as refused:
+        assert f"muscle.{key}" in str(refused), refused
+    else:
+        raise AssertionError(bad)
+paper = {"mass_g": np.longdouble(97.5), "fascicle_length_cm": np.float32(11),
+         "tendon_length_cm": np.int8(2), "max_path_length_cm": 18.4,
+         "fiber": ({"preset": np.str_("paper-table-1/slow"), "fraction": np.array(1)},)}
+assert vm.Muscle(paper).mass_kg == 0.0975
+"""
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert ran.returncode == 0, ran.stderr
+
+
+def test_a_file_or_list_that_cannot_be_read_is_a_refused_value(paper, tmp_path):
+    file = tmp_path / "muscle.toml"
+    file.write_text("mass_g =")
+    for refuse, field, value in [
+        (lambda: vm.Muscle({"mas_g": 1}), "muscle", "dict"),
+        (lambda: vm.Muscle.from_toml("name = 3"), "muscle", "text"),
+        (lambda: vm.Muscle(file), "muscle", str(file)),
+        (lambda: vm.fit(paper, {"trails": []}), "trials", "dict"),
+        (lambda: vm.fit(paper, {"trial": []}, starts=-1), "starts", -1),
+        (lambda: vm.fit(paper, {"trial": []}, seed=-1), "seed", -1),
+        (lambda: paper.curves().passive(np.ma.array([1, 2.0], mask=[0, 1])), None, "masked"),
+        (lambda: paper.curves().force_length(-1, 1.0), "fiber", -1),
+    ]:
+        with pytest.raises(vm.ParameterError) as refused:
+            refuse()
+        assert refused.value.value == value
+        assert field is None or refused.value.field == field
+    assert paper.curves().passive(np.ma.array([1, 1.0])).shape == (2,)
+
+
+@pytest.mark.parametrize("words", [[1, 2], None, np.zeros(22), np.zeros((1, 22), np.uint64)])
+def test_words_of_another_type_are_refused_by_name(paper, words):
+    for kept in [paper.at_rest(0.16), vm.Fatigue.quadriceps()]:
+        with pytest.raises(TypeError, match="words is .*: must be the uint64 array that save"):
+            kept.restore(words)
 
 
 def test_files_names_and_words_are_refused(tmp_path):

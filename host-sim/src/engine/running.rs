@@ -27,6 +27,9 @@ pub enum RunError {
         "units = (missing), fibre type of rank {0}: the discrete modes need the number of units"
     )]
     NoUnits(u8),
+    /// The caller of a fit wants no more of it.
+    #[error("stopped before its end")]
+    Stopped,
     /// The reference has no words to restore, and a saved state is that of one muscle only.
     #[error("words = {words}: {problem}")]
     Restore {
@@ -61,6 +64,9 @@ pub trait Running: Send + Sync {
     fn watch(&self, watch: &mut dyn FnMut(u64));
     /// The state as words, fatigue included, with fingerprints; the reference has none.
     fn save(&self) -> Option<Vec<u64>>;
+    /// Slope of the steady force by the path at the present activation, N/m, times the fitness;
+    /// none in the discrete modes and of the reference.
+    fn stiffness(&self) -> Option<f64>;
     /// Takes saved words back, or refuses them and stays as it is.
     fn restore(&mut self, words: &[u64]) -> Result<(), RunError>;
 }

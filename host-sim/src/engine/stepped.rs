@@ -10,9 +10,16 @@ pub(super) struct Stepped<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usiz
     pub(super) muscle: Arc<vm::Muscle<S, R, N>>,
     pub(super) state: vm::State<S, R, N>,
     pub(super) fatiguing: Option<Fatiguing<S>>,
+    /// Static stiffness in F0/L_ce0, in the modes that have one.
+    pub(super) slope: Option<Slope<S, R, N>>,
     /// N.
     pub(super) f0: f64,
+    /// N/m.
+    pub(super) f0_per_length: f64,
 }
+
+/// [`vm::Muscle::stiffness`].
+pub(super) type Slope<S, R, const N: usize> = fn(&vm::Muscle<S, R, N>, &vm::State<S, R, N>) -> S;
 
 /// Fatigue of a muscle.
 #[derive(Clone, Copy)]
@@ -68,6 +75,12 @@ impl<S: vm::Scalar, R: vm::Recruitment<S, N>, const N: usize> Running for Steppe
         let fatiguing =
             self.fatiguing.iter().flat_map(|fatiguing| fatiguing.fatigue.save(&fatiguing.state));
         Some(words.chain(fatiguing).map(Into::into).collect())
+    }
+
+    fn stiffness(&self) -> Option<f64> {
+        let slope = self.slope?(&self.muscle, &self.state).to_f64() * self.f0_per_length;
+        let fitness = self.fatiguing.map_or(1.0, |fatiguing| fatiguing.state.fitness().to_f64());
+        Some(slope * fitness)
     }
 
     fn restore(&mut self, words: &[u64]) -> Result<(), RunError> {

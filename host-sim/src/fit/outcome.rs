@@ -10,6 +10,8 @@ use crate::metrics::ForceError;
 use crate::muscle_file::NamedMuscle;
 use crate::reference::Muscle;
 use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use vm_nostd::Status;
 
 /// A trial with the model's force.
@@ -84,8 +86,22 @@ pub fn fit(
     search: &Search,
     confirm: &[Arithmetic],
 ) -> Result<Fit, FitError> {
+    fit_until(start, keep_force, trials, search, confirm, &Arc::default())
+}
+
+/// [`fit`], which fails soon after `stop` is set by another thread: it is looked at before a trial
+/// is run.
+pub fn fit_until(
+    start: &NamedMuscle,
+    keep_force: bool,
+    trials: Trials,
+    search: &Search,
+    confirm: &[Arithmetic],
+    stop: &Arc<AtomicBool>,
+) -> Result<Fit, FitError> {
     let in_fixed_point = confirm.contains(&Arithmetic::Fixed);
-    let problem = Problem::new(start.muscle.clone(), keep_force, in_fixed_point, trials)?;
+    let start = start.muscle.clone();
+    let problem = Problem::new(start, keep_force, in_fixed_point, trials, Arc::clone(stop))?;
     let (solution, near) = search.best(&problem)?;
     let values = &solution.values;
     let failed = |why: &str| FitError::NoSolution(search.starts, why.to_owned());

@@ -8,6 +8,8 @@ use crate::muscle_file::curve;
 use crate::reference::{Input, Muscle};
 use crate::trace::InputTrace;
 use nalgebra::DMatrix;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use vm_nostd::{Pulse, RecruitmentCurve, Status};
 
 /// Recordings and the starting muscle.
@@ -19,6 +21,8 @@ pub struct Problem {
     /// Whether fixed point must accept every muscle of the search.
     in_fixed_point: bool,
     pub(super) trials: Trials,
+    /// Set when nothing more is to be run.
+    stop: Arc<AtomicBool>,
 }
 
 /// Result of running a trial with given parameters.
@@ -39,8 +43,9 @@ impl Problem {
         keep_force: bool,
         in_fixed_point: bool,
         trials: Trials,
+        stop: Arc<AtomicBool>,
     ) -> Result<Self, FitError> {
-        let problem = Self { start, keep_force, in_fixed_point, trials };
+        let problem = Self { start, keep_force, in_fixed_point, trials, stop };
         let values: Vec<f64> = problem.parameters().iter().map(|p| p.start).collect();
         for trial in &problem.trials.trials {
             problem
@@ -83,6 +88,9 @@ impl Problem {
         values: &[f64],
         arithmetic: Arithmetic,
     ) -> Result<Played, RunError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(RunError::Stopped);
+        }
         let muscle = self.muscle(values);
         let trace = self.inputs(trial, values)?;
         let path = trace.inputs[0].path_length;

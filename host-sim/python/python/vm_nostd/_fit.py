@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._errors import ParameterError
-from ._native import Fit, Muscle, fit_list
+from ._native import Fit, Muscle, fit_list, numbers
 
 
 def fit(
@@ -31,24 +31,28 @@ def fit(
     with TemporaryDirectory() as written:
         listed = {
             key: [_in_files(trial, index, Path(written)) for index, trial in enumerate(value)]
-            if key == "trial"
+            if key == "trial" and isinstance(value, list | tuple)
             else value
             for key, value in trials.items()
         }
         return fit_list(muscle, listed, folder or ".", starts, seed)
 
 
-def _in_files(trial: dict[str, Any], index: int, folder: Path) -> dict[str, Any]:
+def _in_files(trial: Any, index: int, folder: Path) -> Any:
     """A trial whose arrays are in files."""
+    if not isinstance(trial, dict):
+        return trial
 
     def signal(key: str, value: Any) -> Any:
         if not (isinstance(value, dict) and "time_s" in value):
             return value
-        columns = [np.asarray(value[name], dtype=float) for name in ("time_s", "value")]
-        shapes = [column.shape for column in columns]
-        if shapes[0] != shapes[1] or len(shapes[0]) != 1:
-            field = f"trial[{index}].{key}"
-            raise ParameterError(field, f"{shapes}", "time_s and value must be equally long")
+        field = f"trial[{index}].{key}"
+        if "value" not in value:
+            raise ParameterError(field, "time_s alone", "must have time_s and value")
+        columns = [numbers(f"{field}.{name}", value[name]) for name in ("time_s", "value")]
+        lengths = [len(column) for column in columns]
+        if lengths[0] != lengths[1]:
+            raise ParameterError(field, f"{lengths}", "time_s and value must be equally long")
         file = folder.resolve() / f"{index}_{key}.csv"
         np.savetxt(file, np.column_stack(columns), "%.17g", ",")
         kept = {name: value[name] for name in value if name not in ("time_s", "value")}
