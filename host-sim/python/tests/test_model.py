@@ -116,7 +116,8 @@ WORK = {
             "noise_pct_f0": 1,
             "trial": [{
                 "name": "tetanus", "role": "fit", "mode": "fes",
-                "force": {"time_s": np.arange(60_000) * 1e-3, "value": 50 + np.sin(np.arange(60_000))},
+                "force": {"time_s": np.arange(60_000) * 1e-3,
+                          "value": 50 + np.sin(np.arange(60_000))},
                 "length": {"constant": 0.16}, "activation": {"constant": 0.5},
                 "stimulation_pps": {"constant": 40},
             }],

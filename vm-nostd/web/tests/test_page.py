@@ -255,10 +255,11 @@ def test_less_motion_is_wanted(page):
 def test_what_stands_still_is_not_drawn_again(page):
     page.advance(1)
     drawn = page.driver.execute_async_script(
-        "const done = arguments[0]; let drawn = 0; const fill = CanvasRenderingContext2D.prototype.fillText;"
-        "setTimeout(() => { CanvasRenderingContext2D.prototype.fillText = function (...all) {"
+        "const [done, drawing] = [arguments[0], CanvasRenderingContext2D.prototype];"
+        "const fill = drawing.fillText; let drawn = 0;"
+        "setTimeout(() => { drawing.fillText = function (...all) {"
         " drawn += 1; fill.apply(this, all); }; }, 300);"
-        "setTimeout(() => { CanvasRenderingContext2D.prototype.fillText = fill; done(drawn); }, 600);"
+        "setTimeout(() => { drawing.fillText = fill; done(drawn); }, 600);"
     )
     assert drawn == 0
     before = page.element("scope").get_property("width")
