@@ -178,7 +178,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
         let wanted = strength.ratio(share.max(S::LEAST));
         let reachable = share > S::ZERO && wanted <= S::of_quantity(most, &self.per_saturation);
         if reachable {
-            (self.amplitudes.clip(wanted.as_quantity(&self.saturation)).0, w | u)
+            (self.amplitudes.clip(wanted.to_quantity(&self.saturation)).0, w | u)
         } else {
             (most, w | u | unreachable(activation))
         }
@@ -195,7 +195,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
         let most = self.widths.most;
         let reachable = available > strength && wanted <= S::of_quantity(most, &self.per_chronaxie);
         if reachable {
-            (self.widths.clip(wanted.as_quantity(&self.chronaxie)).0, a | u)
+            (self.widths.clip(wanted.to_quantity(&self.chronaxie)).0, a | u)
         } else {
             (most, a | u | unreachable(activation))
         }

@@ -72,7 +72,7 @@ impl<S: Scalar> Intervals<S> {
         if state.last == S::ZERO || state.since >= self.pause {
             return self.none;
         }
-        let frequency = state.since.max(state.last).reciprocal().as_quantity(&self.unit);
+        let frequency = state.since.max(state.last).reciprocal().to_quantity(&self.unit);
         if frequency > self.most { self.most } else { frequency }
     }
 }

@@ -203,7 +203,7 @@ impl<S: Scalar, const J: usize, const M: usize> Joint<S, J, M> {
 
     /// A torque or stiffness in N m, or N m/rad, from units of 1,024.
     pub(super) fn quantity(&self, number: S) -> S::Quantity {
-        number.as_quantity(&self.unit)
+        number.to_quantity(&self.unit)
     }
 
     /// Stiffness about each joint, N m/rad, from the tendon forces relative to F0 and the muscles'

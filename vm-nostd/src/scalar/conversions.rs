@@ -4,7 +4,7 @@ use super::constant::Constant;
 use super::{Factors, Representation};
 
 /// Conversion between numbers and values with a unit.
-pub(crate) trait Conversions: Representation + Factors {
+pub(crate) trait Conversions: Representation + Factors + Copy {
     /// Number of the arithmetic in a saved state.
     const ARITHMETIC: u32;
     /// Largest representable coefficient.
@@ -42,7 +42,7 @@ pub(crate) trait Conversions: Representation + Factors {
     /// Factor from numbers to quantities: units per 1.
     fn quantity_factor(value: f64) -> Self::Factor;
     /// A number times a factor as a quantity; saturates.
-    fn as_quantity(self, quantity_factor: &Self::Factor) -> Self::Quantity;
+    fn to_quantity(self, quantity_factor: &Self::Factor) -> Self::Quantity;
 
     /// Factor from relative force to force, for F0 in N.
     fn force_factor(newtons: f64) -> Self::Factor;

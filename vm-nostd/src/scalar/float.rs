@@ -277,7 +277,7 @@ macro_rules! float {
             fn quantity_factor(value: f64) -> Self {
                 value as Self
             }
-            fn as_quantity(self, quantity_factor: &Self) -> Self {
+            fn to_quantity(self, quantity_factor: &Self) -> Self {
                 self * quantity_factor
             }
 

@@ -95,13 +95,12 @@ fn check(stride: i64) {
         };
         let Row { arithmetic, kernel, range, bound, .. } = row;
         let unit = row.unit.text();
-        writeln!(
-            report,
-            "{arithmetic} {kernel} {range}: {found:.3e} of {bound:e} {unit}: {verdict}"
-        )
-        .expect("a text");
+        let line =
+            format!("{arithmetic} {kernel} {range}: {found:.3e} of {bound:e} {unit}: {verdict}");
+        println!("{line}");
+        report += &line;
+        report.push('\n');
     }
-    println!("{report}");
     assert!(!report.contains("EXCEEDED") && !report.contains("STALE"), "\n{report}");
 }
 

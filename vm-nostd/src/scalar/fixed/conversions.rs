@@ -79,7 +79,7 @@ impl Conversions for Fixed {
     fn quantity_factor(value: f64) -> Factor {
         Factor::new(value * QUANTITY_UNITS / UNITS)
     }
-    fn as_quantity(self, quantity_factor: &Factor) -> I16F16 {
+    fn to_quantity(self, quantity_factor: &Factor) -> I16F16 {
         I16F16::from_bits(quantity_factor.times(self.to_bits()))
     }
 

@@ -13,7 +13,7 @@ const LN_2_LOW: f32 = -2.121_944_4e-4;
 /// Smallest x for which e^x is a normal number, as an integer.
 const LEAST_EXPONENT: f32 = -87.0;
 
-/// e^x for x <= 88; the relative error is below 2.1e-7. x is clamped to at least -87.
+/// e^x for x <= 88; the relative error is below 2.2e-7. x is clamped to at least -87.
 #[inline(always)]
 pub(super) fn exp(x: f32) -> f32 {
     let x = if x > LEAST_EXPONENT { x } else { LEAST_EXPONENT };

@@ -133,13 +133,13 @@ pub(super) const ROWS: [Row; 20] = [
         let sum = terms.iter().rev().fold(0.0, |sum, term| term.to_f64() + sum * exact);
         unit.of(found.to_f64(), sum)
     }),
-    row("square root", "1..2^60", RANDOM, 2.5e-8, Unit::Relative, |_, seed| {
+    row("square root, beyond 1 unit", "1..2^60", RANDOM, 2.5e-8, Unit::Relative, |_, seed| {
         let x = Random::new(seed).wide();
         let (found, exact) = (f64::from(fixed_square_root(x)), (x as f64).sqrt());
         // Beyond one unit of rounding.
         ((found - exact).abs() - 1.0).max(0.0) / exact
     }),
-    row("product", "all", RANDOM, 1.0, Unit::Ulp, |unit, seed| {
+    row("product", "not saturated", RANDOM, 1.0, Unit::Ulp, |unit, seed| {
         let [(a, x), (b, y)] = numbers(seed);
         let exact = x * y;
         // On overflow it is within 255 ULP of the limit.
