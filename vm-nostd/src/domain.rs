@@ -30,11 +30,11 @@ summed! {
         pub(crate) path_length: Range<S::PathLength>,
         /// Validity range of the filaments' equations, L_ce0.
         pub(crate) filaments: Range<S>,
-        /// V_max of the slowest type, limited to the state range, L_ce0/s: above it FV of all types is
-        /// valid.
+        /// V_max of the slowest type, limited to the state range, L_ce0/s: above it FV of all types
+        /// is valid.
         pub(crate) shortening_velocity: S,
-        /// State range of the length, L_ce0: from the lower end of the validity range to the length of
-        /// a muscle at rest on the longest path, plus a margin.
+        /// State range of the length, L_ce0: from the lower end of the validity range to the length
+        /// of a muscle at rest on the longest path, plus a margin.
         pub(crate) fascicle_length: Range<S>,
         /// Intersection of `fascicle_length` and `filaments`, L_ce0: lengths that raise no flag.
         unflagged: Range<S>,

@@ -830,7 +830,11 @@ typedef enum {
   /**
    * VmMuscleParams.version is not VM_VERSION of this library.
    */
-  VM_RESULT_VERSION = 9
+  VM_RESULT_VERSION = 9,
+  /**
+   * The words are damaged, or of something else than was asked for; VmError has details.
+   */
+  VM_RESULT_WORDS = 10
 } VmResult;
 
 /**
@@ -2525,6 +2529,23 @@ VmResult vm_f32_build_units(VmMuscleF32 *muscle,
                             VmError *error);
 
 /**
+ * Takes a muscle from the words of `vm emit`, with the bits of a built one; firmware that
+ * builds none is smaller. Number of types, mode, class and time step must be those of
+ * the words. VM_RESULT_WORDS if they are others, or if the words are damaged or of another
+ * version; `error`, which may be null, has details of that, VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE. Rest or restore comes next.
+ */
+VmResult vm_f32_from_words(VmMuscleF32 *muscle,
+                           size_t size,
+                           const uint32_t *words,
+                           size_t count,
+                           uint32_t fiber_count,
+                           uint32_t mode,
+                           uint32_t accuracy_class,
+                           double time_step_s,
+                           VmError *error);
+
+/**
  * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
  * muscle is unchanged.
  */
@@ -2876,6 +2897,23 @@ VmResult vm_fixed_build_units(VmMuscleFixed *muscle,
                               uint32_t mode,
                               double time_step_s,
                               VmError *error);
+
+/**
+ * Takes a muscle from the words of `vm emit`, with the bits of a built one; firmware that
+ * builds none is smaller. Number of types, mode, class and time step must be those of
+ * the words. VM_RESULT_WORDS if they are others, or if the words are damaged or of another
+ * version; `error`, which may be null, has details of that, VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE. Rest or restore comes next.
+ */
+VmResult vm_fixed_from_words(VmMuscleFixed *muscle,
+                             size_t size,
+                             const uint32_t *words,
+                             size_t count,
+                             uint32_t fiber_count,
+                             uint32_t mode,
+                             uint32_t accuracy_class,
+                             double time_step_s,
+                             VmError *error);
 
 /**
  * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the
@@ -3233,6 +3271,23 @@ VmResult vm_f64_build_units(VmMuscleF64 *muscle,
                             uint32_t mode,
                             double time_step_s,
                             VmError *error);
+
+/**
+ * Takes a muscle from the words of `vm emit`, with the bits of a built one; firmware that
+ * builds none is smaller. Number of types, mode, class and time step must be those of
+ * the words. VM_RESULT_WORDS if they are others, or if the words are damaged or of another
+ * version; `error`, which may be null, has details of that, VM_RESULT_PARAMETER and
+ * VM_RESULT_SIZE. Rest or restore comes next.
+ */
+VmResult vm_f64_from_words(VmMuscleF64 *muscle,
+                           size_t size,
+                           const uint32_t *words,
+                           size_t count,
+                           uint32_t fiber_count,
+                           uint32_t mode,
+                           uint32_t accuracy_class,
+                           double time_step_s,
+                           VmError *error);
 
 /**
  * Puts a muscle at rest on a path. VM_RESULT_PARAMETER if the path is out of range; the

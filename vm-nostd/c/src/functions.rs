@@ -113,8 +113,8 @@ macro_rules! functions {
             told(muscle::build::<$S, _>(muscle, &order), error)
         }
 
-        /// Takes a muscle from the words that `vm emit` wrote, with the bits of a built one; firmware
-        /// that builds none is smaller. Number of types, mode, class and time step must be those of
+        /// Takes a muscle from the words of `vm emit`, with the bits of a built one; firmware that
+        /// builds none is smaller. Number of types, mode, class and time step must be those of
         /// the words. VM_RESULT_WORDS if they are others, or if the words are damaged or of another
         /// version; `error`, which may be null, has details of that, VM_RESULT_PARAMETER and
         /// VM_RESULT_SIZE. Rest or restore comes next.

@@ -84,7 +84,8 @@ pub struct Pulse<S: Scalar> {
 }
 
 summed! {
-    /// Coefficients of a recruitment curve. Its methods cannot fail and have no data-dependent loops.
+    /// Coefficients of a recruitment curve. Its methods cannot fail and have no data-dependent
+    /// loops.
     ///
     /// Activation is monotonic in amplitude and width.
     ///
