@@ -10,8 +10,8 @@ pub(super) const UNITS: f64 = (1 << FRACTION) as f64;
 pub(super) const QUANTITY_UNITS: f64 = (1 << 16) as f64;
 
 summed! {
-    /// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer multiples
-    /// of their ULP ("units").
+    /// A constant factor of any magnitude, mantissa × 2^-shift, between numbers as integer
+    /// multiples of their ULP ("units").
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Factor {
         mantissa: i32,
