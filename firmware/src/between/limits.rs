@@ -337,6 +337,11 @@ mod tests {
         }
         let board = Limits::SURFACE.within_scale(&Scale { full_scale_ua: 50_000, ..SCALE });
         assert_eq!((board.amplitude_ua, board.charge_nc, board.rise_ua), (50_000, 25_000, 2_000));
+        // A charge that 32 bits cannot hold is as much as they can.
+        let most = Limits { amplitude_ua: u32::MAX, charge_nc: u32::MAX, ..Limits::SURFACE };
+        let wide = Limits { width_us: u16::MAX, ..most };
+        let scale = Scale { full_scale_ua: u32::MAX, ..SCALE };
+        assert_eq!(wide.within_scale(&scale).charge_nc, u32::MAX);
     }
 
     #[test]

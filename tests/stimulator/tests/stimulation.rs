@@ -245,7 +245,10 @@ fn one_pulse_is_these_words_and_levels() {
         let duration_us = phase.duration_us.into();
         stage.apply(&Step { output: Some((1, phase)), duration_us }).expect("an output");
     }
-    stage.apply(&Step { output: None, duration_us: 100 }).expect("an output");
+    // The first ends the pulse; another one has nothing to say.
+    for _ in 0..2 {
+        stage.apply(&Step { output: None, duration_us: 100 }).expect("an output");
+    }
     converter.done();
     for pin in [&mut cathodic, &mut anodic, &mut used].into_iter().chain(&mut others) {
         pin.done();

@@ -104,6 +104,10 @@ fn without_a_generator_a_boot_that_is_repeated_to_the_poll_repeats_its_session()
     // Another host adds another nonce.
     assert_ne!(session_with(0xA0_0007, 1), session);
     assert_ne!(session_with(1, 1), session_with(2, 1));
+    // Every bit of the nonce counts, but for the one that is always set.
+    for bit in 1..32 {
+        assert_ne!(session_with(1 << bit, 1), session_with(0, 1), "bit {bit}");
+    }
 }
 
 /// The number of the session that a greeting with a nonce begins after so many ticks.
@@ -149,19 +153,23 @@ fn without_a_random_number_no_session_begins() {
 /// Odd whatever it is made of, and never that of the session before.
 #[test]
 fn no_session_has_the_number_of_none_or_of_the_one_before() {
-    struct Always;
+    struct Always(u32);
     impl Randomness for Always {
         fn number(&mut self, _polls: u32) -> Option<u32> {
-            Some(stimulator_tests::client::NONCE)
+            Some(self.0)
         }
     }
-    let mut host = Client::new(booted(Box::new(Always)));
-    let mut before = 0;
-    for _ in 0..5 {
-        host.greet().expect("a greeting");
-        let number = host.session().0;
-        assert_eq!(number % 2, 1);
-        assert_ne!(number, before);
-        before = number;
+    // Together with the nonce 0, 1 and 2.
+    for with in 0..3 {
+        let number = Always(stimulator_tests::client::NONCE ^ with);
+        let mut host = Client::new(booted(Box::new(number)));
+        let mut before = 0;
+        for _ in 0..5 {
+            host.greet().expect("a greeting");
+            let number = host.session().0;
+            assert_eq!(number % 2, 1);
+            assert_ne!(number, before);
+            before = number;
+        }
     }
 }

@@ -99,9 +99,12 @@ fn a_prediction_is_nearer_than_the_last_reading() {
 #[test]
 fn targets_go_on_at_their_velocity_and_expire() {
     let mut closed_loop = ClosedLoop::new();
-    closed_loop.aim(Guarded::new(Target { angle: 1.0, velocity: 2.0, ..Target::default() }));
-    closed_loop.take(reading(0, 1_000_000), PERIOD_US);
+    let aimed = Guarded::new(Target { angle: 1.0, velocity: 2.0, ..Target::default() });
+    closed_loop.aim(aimed);
+    closed_loop.age();
     assert_eq!(closed_loop.target_age_us(), 0, "nothing follows it yet");
+    closed_loop.aim(aimed);
+    closed_loop.take(reading(0, 1_000_000), PERIOD_US);
     let mut placed = elbow();
     closed_loop.follow(&mut placed).expect("both");
     assert_eq!(closed_loop.run, Run::Ticks);
@@ -116,6 +119,7 @@ fn targets_go_on_at_their_velocity_and_expire() {
     closed_loop.age();
     closed_loop.expire(us);
     assert!(closed_loop.follow(&mut placed).is_none());
+    assert_eq!(closed_loop.target_age_us(), 0, "none is followed any more");
 }
 
 #[test]

@@ -122,6 +122,19 @@ fn a_step_does_not_hide_what_was_lost_before() {
 }
 
 #[test]
+fn a_controller_is_built_at_rest_in_the_middle_of_its_range() {
+    assert_eq!(ELBOW.range.least, 0.0);
+    let built = elbow();
+    let state_at = |angle| {
+        let mut placed = elbow();
+        placed.start(angle);
+        placed.state.checksum()
+    };
+    assert_eq!(built.state.checksum(), state_at(ELBOW.range.most as f32 / 2.0));
+    assert_ne!(built.state.checksum(), state_at(0.0));
+}
+
+#[test]
 fn commands_become_pulses_within_the_electrodes_bounds() {
     let mut placed = elbow();
     placed.start(1.0);

@@ -105,22 +105,31 @@ proptest! {
     }
 
     #[test]
-    fn rows_and_drives_are_too_old_when_they_are_over_their_limits_and_not_before(
+    fn requests_are_too_old_when_they_are_over_their_limits_and_not_before(
         rows_ms in limit_ms(),
         drives_ms in limit_ms(),
+        targets_ms in limit_ms(),
     ) {
-        let limits = Limits { rows_ms, drives_ms, ..Limits::SURFACE };
+        let limits = Limits { rows_ms, drives_ms, targets_ms, ..Limits::SURFACE };
         let mut supervisor = armed(limits, 1000);
-        let (row_age_us, drive_age_us) = (micros(rows_ms), micros(drives_ms));
-        let oldest = Requested { row_age_us, drive_age_us, ..REQUESTED };
+        let oldest = Requested {
+            row_age_us: micros(rows_ms),
+            drive_age_us: micros(drives_ms),
+            target_age_us: micros(targets_ms),
+            ..REQUESTED
+        };
         prop_assert!(supervisor.tick(&observed(160_001), &oldest));
-        let mut other = supervisor.clone();
-        let row = Requested { row_age_us: row_age_us + 1, ..oldest };
-        prop_assert!(!supervisor.tick(&observed(160_000), &row));
-        prop_assert_eq!(supervisor.state(), State::Latched(Fault::StaleRow));
-        let drive = Requested { drive_age_us: drive_age_us + 1, ..oldest };
-        prop_assert!(!other.tick(&observed(160_000), &drive));
-        prop_assert_eq!(other.state(), State::Latched(Fault::StaleDrive));
+        let [mut row, mut drive, mut target] = [oldest; 3];
+        row.row_age_us += 1;
+        drive.drive_age_us += 1;
+        target.target_age_us += 1;
+        for (requested, fault) in
+            [(row, Fault::StaleRow), (drive, Fault::StaleDrive), (target, Fault::StaleTarget)]
+        {
+            let mut supervisor = supervisor.clone();
+            prop_assert!(!supervisor.tick(&observed(160_000), &requested));
+            prop_assert_eq!(supervisor.state(), State::Latched(fault));
+        }
     }
 }
 

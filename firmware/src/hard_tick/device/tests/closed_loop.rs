@@ -194,6 +194,19 @@ fn an_arming_begins_anew() {
     assert_eq!(*fresh.device.demand.value.get().expect("demands"), demands);
 }
 
+/// A target is given before arming: in force for its time, and no other.
+#[test]
+fn a_target_outlasts_arming() {
+    let mut bench = Bench::armed();
+    bench.order(Order::Stop);
+    bench.order(Order::Acknowledge(Fault::Stopped));
+    bench.aim(1.6);
+    (0..20).for_each(|_| assert!(!bench.tick()));
+    bench.order(Order::Arm);
+    (0..60).for_each(|_| assert!(bench.tick()));
+    assert!(bench.stimulates());
+}
+
 /// A tick steps no controller for the host while it is armed.
 #[test]
 fn steps_are_for_the_disarmed() {
