@@ -26,6 +26,17 @@ fn fractions_must_add_to_one_within_1e_6() {
     }
 }
 
+/// Types are in order of rank; those of the same one may be in any.
+#[test]
+fn types_may_share_a_rank() {
+    let MuscleParams { fibers: [slow, fast], .. } = MUSCLE;
+    assert!(slow.fiber_type.rank < fast.fiber_type.rank);
+    assert_eq!(changed(|p| p.fibers[1].fiber_type.rank = slow.fiber_type.rank).validate(), Ok(()));
+    let refused = changed(|p| p.fibers = [fast, slow]).validate().expect_err("the wrong order");
+    let limit = Limit::NotBefore { rank: f64::from(fast.fiber_type.rank) };
+    assert_eq!((refused.field, refused.fiber, refused.limit), ("rank", Some(1), limit));
+}
+
 /// FV must rise with velocity at every fascicle length: at the shortest, at the longest, and at an
 /// extremum of its coefficients in between.
 #[test]

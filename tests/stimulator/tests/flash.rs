@@ -203,8 +203,12 @@ fn nothing_is_begun_before_the_watchdog_allows_flash() {
     assert_eq!(flash.erase(0, SECTOR as u32), Ok(()));
     assert!(flash.controller().watchdog_allows_flash());
     flash.controller().allowed_from = begun.wrapping_add(0x7000_0000);
+    let waits_from = flash.controller().counts.get();
     assert_eq!(flash.erase(0, SECTOR as u32), Err(FlashError::Busy));
     assert_eq!(flash.controller().operations, 1);
+    // About as long as a change takes, and no longer.
+    let waited = flash.controller().counts.get().wrapping_sub(waits_from);
+    assert!(waited < 2 * MOST_CHANGE_MS * 10, "{waited}");
 }
 
 #[test]

@@ -255,6 +255,13 @@ fn an_upload_that_is_cut_leaves_a_muscle() {
     assert!((10..30).contains(&heavy), "{heavy} of 62");
 }
 
+/// A slot is half of the memory, and is erased by whole pages.
+#[test]
+fn a_slot_is_whole_pages() {
+    let page = RamFlash::<BYTES>::ERASE_SIZE;
+    assert!((BYTES / 2).is_multiple_of(page), "{page}");
+}
+
 /// The slot that was written after the greatest generation there is counts.
 #[test]
 fn generations_of_slots_go_round() {

@@ -145,6 +145,13 @@ fn a_timeout_is_long_enough_at_the_fastest_oscillator() {
     }
 }
 
+/// Of two that last equally long, the one that counts finer.
+#[test]
+fn a_timeout_counts_as_fine_as_it_can() {
+    assert_eq!(Timeout::at_least(5_577), Timeout { prescaler: 4, reload: 4095 });
+    assert_eq!(Timeout::at_least(5_578), Timeout { prescaler: 5, reload: 2048 });
+}
+
 /// The README has these numbers.
 #[test]
 fn the_readme_has_these_numbers() {
