@@ -1,8 +1,8 @@
 //! What fixed point refuses: numbers in F0 and L_ce0 beyond 60, and sums of two beyond 120. Each
 //! limit from both sides, a hundredth away from it.
 
-use firmware::MUSCLE;
 use vm_nostd::{FesMuscle, Fixed, MuscleParams, TimeStep};
+use vm_nostd_cores::MUSCLE;
 
 type Params = MuscleParams<2>;
 
