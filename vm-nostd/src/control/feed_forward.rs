@@ -44,13 +44,6 @@ impl<S: Scalar> InverseState<S> {
     }
 }
 
-/// Torques of the antagonists.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shares<S> {
-    /// Of each muscle, with its sign.
-    pub(super) torques: [S; 2],
-}
-
 summed! {
     /// The coefficients that do not belong to a muscle.
     #[derive(Clone, Copy, Debug)]
@@ -61,11 +54,11 @@ summed! {
 }
 
 impl<S: Scalar> CoContraction<S> {
-    /// Flexor and extensor that together make a torque.
-    pub(super) fn shares(&self, torque: S) -> Shares<S> {
+    /// Torques of flexor and extensor, each with its sign, that together make a torque.
+    pub(super) fn shares(&self, torque: S) -> [S; 2] {
         let flexion = torque.max(S::ZERO) + self.torque;
         let extension = torque.min(S::ZERO) - self.torque;
-        Shares { torques: [flexion, extension] }
+        [flexion, extension]
     }
 }
 

@@ -3,112 +3,41 @@
 //! Each tick: target -> torque of the motion ([`LimbParams`]) plus PI -> the model's inverse ->
 //! activation of flexor and extensor -> pulse. Nothing in it can fail, and no loop depends on data.
 
-use super::feed_forward::{CoContraction, Inverse, InverseState, LEAST_ACTIVATION};
-use super::fes_params::{FesControllerParams, Measured, Modulation};
+use super::electrode::Electrode;
+use super::feed_forward::{CoContraction, Inverse, InverseState, LEAST_ACTIVATION, Stimulated};
+use super::fes_io::{ControlStatus, FesCommand, Sensors, Target};
+use super::fes_params::{FesControllerParams, Measured};
+use super::fes_state::FesControllerState;
 use super::gain_estimate::{GainEstimate, Learnt};
 use super::joint::{Joint, JointError, JointMuscle, TORQUE_UNIT};
-use super::lead::{Lead, LeadParams, LeadState};
+use super::lead::{Lead, LeadParams};
 use super::limb::Limb;
-use super::pi::{Pi, PiState, Saturated};
-use super::saved::{Parts, fingerprint};
-use crate::beyond_paper::fatigue::{Fatigue, FatigueParams, FatigueState};
-use crate::beyond_paper::recruitment_curve::{
-    Pulse, PulseStatus, RecruitmentCurve, RecruitmentCurveParams,
-};
+use super::pi::{Pi, Saturated};
+use crate::beyond_paper::fatigue::{Fatigue, FatigueParams};
 use crate::beyond_paper::steady::SteadyFes;
 use crate::checksum::Checksum;
 use crate::error::ParameterError;
 use crate::params::MuscleParams;
-use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
-use crate::status::Status;
 use crate::summed::{Summed, summed};
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
-bitflags::bitflags! {
-    /// What a tick of a controller had to saturate.
-    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-    pub struct ControlStatus: u16 {
-        /// The measured value was not finite: the last one was kept.
-        const MEASURED_NOT_FINITE = 1 << 0;
-        /// The target was not finite (the last angle was kept, without motion) or outside its
-        /// range, for torques 10,240 N m (clipped).
-        const TARGET_INVALID = 1 << 1;
-        /// The measured angle was outside the joint's range, or the torque beyond 10,240 N m, and
-        /// was clipped.
-        const MEASURED_CLIPPED = 1 << 2;
-        /// The torque was clipped to its limits.
-        const TORQUE_LIMITED = 1 << 3;
-        /// No activation makes the torque: a muscle is stimulated fully.
-        const UNREACHABLE = 1 << 4;
-        /// The lead asked for stimulation outside of 0..1.
-        const LEAD_CLIPPED = 1 << 5;
-        /// The gain would have left its range: the update was refused.
-        const GAIN_REFUSED = 1 << 6;
-        /// The gain is frozen: too little torque, or saturated.
-        const GAIN_FROZEN = 1 << 7;
-        /// No pulse recruits what was asked for.
-        const PULSE_UNREACHABLE = 1 << 8;
-    }
-}
-
-/// What is wanted, in a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target<S: Scalar> {
-    /// Angle, rad.
-    pub angle: S,
-    /// Its velocity, rad/s.
-    pub velocity: S,
-    /// Its acceleration, rad/s².
-    pub acceleration: S,
-    /// Torque, N m, in addition to that of the motion; with [`Measured::Torque`] the only one.
-    pub torque: S::Quantity,
-}
-
-/// What is measured, in a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sensors<S: Scalar> {
-    /// Angle, rad.
-    pub angle: S,
-    /// Torque of the muscles, N m; only used with [`Measured::Torque`].
-    pub torque: S::Quantity,
-}
-
-/// What is commanded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FesCommand<S: Scalar> {
-    /// Stimulation of flexor and extensor, 0..1. 0 once less than 0.001 is left of a muscle that is
-    /// no longer wanted.
-    pub activations: [S; 2],
-    /// The pulse that recruits it; for 0 the greatest that recruits nothing, which need not be
-    /// given.
-    pub pulses: [Pulse<S>; 2],
-    /// Torque that was asked of the model's inverse, N m.
-    pub torque: S::Quantity,
-    /// Estimated gain of the muscles.
-    pub gain: S,
-    /// Flags of the inverse.
-    pub muscles: [Status; 2],
-    /// What had to be saturated.
-    pub status: ControlStatus,
-}
-
 summed! {
     /// A controller of a joint with a flexor and an extensor.
     #[derive(Clone, Copy, Debug)]
     pub struct FesController<S: Scalar, const N: usize> {
-        range: Range<S>,
+        pub(super) range: Range<S>,
         joint: Joint<S, 1, 2>,
         limb: Limb<S>,
-        inverses: [Inverse<S, N>; 2],
+        pub(super) inverses: [Inverse<S, N>; 2],
         electrodes: [Electrode<S>; 2],
         cocontraction: CoContraction<S>,
-        feedback: Pi<S>,
-        of_torque: bool,
+        pub(super) feedback: Pi<S>,
+        pub(super) of_torque: bool,
         expected: Lag<S>,
-        gain: Option<GainEstimate<S>>,
+        pub(super) gain: Option<GainEstimate<S>>,
         torque: Range<S>,
         per_torque: S::Factor,
         frequency: S::Quantity,
@@ -119,64 +48,6 @@ summed! {
     sum only
 }
 
-summed! {
-    /// A recruitment curve, and the half of the pulse that is constant.
-    #[derive(Clone, Copy, Debug)]
-    struct Electrode<S: Scalar> {
-        curve: RecruitmentCurve<S>,
-        by_width: bool,
-        constant: S::Quantity,
-    }
-}
-
-/// Everything of a controller that changes from tick to tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FesControllerState<S: Scalar> {
-    /// Last target and measured angle, rad; measured torque, in its unit.
-    target: S,
-    angle: S,
-    measured: S,
-    /// What the feedback expects to be measured.
-    expected: S::LagState,
-    feedback: PiState<S>,
-    gain: S::LagState,
-    saturated: Saturated,
-    inverses: [InverseState<S>; 2],
-}
-
-impl<S: Scalar> FesControllerState<S> {
-    const OWN: usize =
-        1 + 4 + 2 * S::LAG_STATE_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
-    /// Words of a saved state without fatigue; [`FesController::saved_words`] has those of a
-    /// controller.
-    pub const LEAST_SAVED_WORDS: usize = Self::OWN;
-
-    /// Estimated gain.
-    pub fn gain(&self) -> S {
-        S::of(self.gain)
-    }
-
-    /// Its bits, for comparison; [`FesController::save`] adds the fingerprints.
-    pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        let Self { target, angle, measured, expected, feedback, gain, saturated, inverses } = self;
-        let own = [*target, *angle, *measured].map(S::to_bits);
-        own.into_iter()
-            .chain(core::iter::once(S::Bits::from(saturated.bits())))
-            .chain([*expected, *gain].into_iter().flat_map(S::lag_state_words))
-            .chain(feedback.words())
-            .chain(inverses.iter().flat_map(InverseState::words))
-    }
-
-    /// Checksum of all words, see [`FesController::checksum`].
-    pub fn checksum(&self) -> u32 {
-        let mut checksum = Checksum::EMPTY;
-        self.words().for_each(|word| word.sum(&mut checksum));
-        checksum.value()
-    }
-}
-
-/// Distinguishes saved controllers: no mode has this number.
-const CONTROLLER: u32 = 0x101;
 /// Greatest velocity (rad/s) and acceleration (rad/s²) of a target.
 const MOST_MOTION: f64 = 100.0;
 /// Greatest torque (N m) of a target, and that is measured: of an artefact no more stays in the
@@ -213,17 +84,6 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
                 least_activation: S::from_f64(LEAST_ACTIVATION),
             })
         };
-        let electrode = |curve: &RecruitmentCurveParams, modulation: Modulation| {
-            let (by_width, constant) = match modulation {
-                Modulation::Width { amplitude } => (true, amplitude * 1e3),
-                Modulation::Amplitude { width } => (false, width * 1e6),
-            };
-            Ok::<_, ParameterError>(Electrode {
-                curve: RecruitmentCurve::build(curve)?,
-                by_width,
-                constant: S::quantity(constant),
-            })
-        };
         let [flexor_tires, extensor_tires] = params.fatigue;
         let [first_driven, second_driven] = params.modulation;
         let [first, second] = &params.electrodes;
@@ -239,8 +99,8 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
                 inverse(extensor, extensor_tires).map_err(of(1))?,
             ],
             electrodes: [
-                electrode(first, first_driven).map_err(of(0))?,
-                electrode(second, second_driven).map_err(of(1))?,
+                Electrode::build(first, first_driven).map_err(of(0))?,
+                Electrode::build(second, second_driven).map_err(of(1))?,
             ],
             cocontraction: CoContraction {
                 torque: S::from_f64(params.cocontraction / TORQUE_UNIT),
@@ -319,44 +179,28 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         status.set(ControlStatus::TORQUE_LIMITED, limited);
 
         let posture = self.joint.posture([state.angle]);
-        let [forces, forward] = [torque, forward].map(|torque| {
-            self.joint.forces_for(&posture, &self.cocontraction.shares(torque).torques)
-        });
-        let mut activations = [S::ZERO; 2];
-        let mut pulses = [self.pulse(0, S::ZERO).0; 2];
-        let mut muscles = [Status::empty(); 2];
-        let mut at_most = [false; 2];
-        for i in 0..2 {
-            let inverse = &mut state.inverses[i];
-            let path = posture.muscles[i].path_length;
+        let [forces, forward] = [torque, forward]
+            .map(|torque| self.joint.forces_for(&posture, &self.cocontraction.shares(torque)));
+        let driven = [0, 1].map(|i| {
+            let (inverse, path) = (&mut state.inverses[i], posture.muscles[i].path_length);
             let stimulated =
                 self.inverses[i].step(inverse, forces[i], forward[i], path, self.frequency);
-            activations[i] = stimulated.activation;
-            muscles[i] = stimulated.status;
-            at_most[i] = stimulated.at_most;
-            if stimulated.at_most {
-                status |= ControlStatus::UNREACHABLE;
-            }
-            if stimulated.lead_clipped {
-                status |= ControlStatus::LEAD_CLIPPED;
-            }
-            let (pulse, reached) = self.pulse(i, stimulated.activation);
-            pulses[i] = pulse;
-            if !reached {
-                status |= ControlStatus::PULSE_UNREACHABLE;
-            }
-        }
+            let (pulse, reached) = self.electrodes[i].pulse(stimulated.activation);
+            status |= flags(&stimulated, reached);
+            (stimulated, pulse)
+        });
+        let at_most = driven.each_ref().map(|(stimulated, _)| stimulated.at_most);
         state.saturated = Saturated {
             above: at_most[0] || (limited && torque >= self.torque.most),
             below: at_most[1] || (limited && torque <= self.torque.least),
         };
         status |= self.learn(state, torque, fed_back, limited);
         FesCommand {
-            activations,
-            pulses,
+            activations: driven.each_ref().map(|(stimulated, _)| stimulated.activation),
+            pulses: driven.each_ref().map(|(_, pulse)| *pulse),
             torque: self.joint.quantity(torque),
             gain: S::of(state.gain),
-            muscles,
+            muscles: driven.each_ref().map(|(stimulated, _)| stimulated.status),
             status,
         }
     }
@@ -419,18 +263,6 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         (clipped, clipped != number)
     }
 
-    fn pulse(&self, muscle: usize, activation: S) -> (Pulse<S>, bool) {
-        let Electrode { curve, by_width, constant } = &self.electrodes[muscle];
-        let (pulse, status) = if *by_width {
-            let (width, status) = curve.width_for(activation, *constant);
-            (Pulse { amplitude: *constant, width }, status)
-        } else {
-            let (amplitude, status) = curve.amplitude_for(activation, *constant);
-            (Pulse { amplitude, width: *constant }, status)
-        };
-        (pulse, !status.contains(PulseStatus::UNREACHABLE))
-    }
-
     fn learn(
         &self,
         state: &mut FesControllerState<S>,
@@ -446,68 +278,13 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             Learnt::Refused => ControlStatus::GAIN_REFUSED,
         }
     }
+}
 
-    /// Words of a saved state of this controller.
-    pub fn saved_words(&self) -> usize {
-        let tired = self.inverses.iter().filter(|inverse| inverse.fatigue.is_some()).count();
-        FesControllerState::<S>::OWN + tired * FatigueState::<S>::SAVED_WORDS
-    }
-
-    /// The words of a saved state: a fingerprint of the controller, and the state.
-    pub fn save(&self, state: &FesControllerState<S>) -> impl Iterator<Item = S::Bits> {
-        let saturated = state.saturated.bits();
-        let own = [state.target, state.angle, state.measured].map(S::to_bits);
-        let slow = [state.expected, state.gain];
-        let tired = self.inverses.iter().zip(&state.inverses).filter_map(|(inverse, state)| {
-            Some(inverse.fatigue.as_ref()?.save(state.fatigue.as_ref()?))
-        });
-        core::iter::once(S::Bits::from(fingerprint::<S, _>(CONTROLLER, self)))
-            .chain(own)
-            .chain(core::iter::once(S::Bits::from(saturated)))
-            .chain(slow.into_iter().flat_map(S::lag_state_words))
-            .chain(state.feedback.words())
-            .chain(state.inverses.iter().flat_map(|inverse| inverse.lead.words()))
-            .chain(tired.flatten())
-    }
-
-    /// A state saved by [`save`](Self::save); refused unless it is this controller's and one it can
-    /// be in.
-    pub fn restore(
-        &self,
-        words: impl IntoIterator<Item = S::Bits>,
-    ) -> Result<FesControllerState<S>, RestoreError> {
-        let length = FesControllerState::<S>::OWN;
-        let mut parts = Parts::new(words.into_iter(), self.saved_words());
-        let expected = fingerprint::<S, _>(CONTROLLER, self);
-        let mut state = self.start(self.range.least);
-        parts.part(length, |words| {
-            let mut saved = Saved::new(words, length, expected)?;
-            state.target = saved.number(|angle| self.range.contains(angle))?;
-            state.angle = saved.number(|angle| self.range.contains(angle))?;
-            state.measured = saved.number(S::is_finite)?;
-            let saturated = saved.count(4)?;
-            state.saturated = Saturated { above: saturated & 1 != 0, below: saturated & 2 != 0 };
-            let any = S::from_f64(1e4);
-            let range = if self.of_torque { Range { least: -any, most: any } } else { self.range };
-            state.expected = saved.lag_state(&range)?;
-            let gains = Range { least: S::ONE, most: S::ONE };
-            state.gain = match &self.gain {
-                Some(gain) => gain.restored(&mut saved)?,
-                None => saved.lag_state(&gains)?,
-            };
-            state.feedback = self.feedback.restored(&mut saved)?;
-            for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {
-                state.lead = inverse.lead.restored(&mut saved)?;
-            }
-            saved.finished()
-        })?;
-        for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {
-            if let Some(fatigue) = &inverse.fatigue {
-                let length = FatigueState::<S>::SAVED_WORDS;
-                state.fatigue = Some(parts.part(length, |words| fatigue.restore(words))?);
-            }
-        }
-        parts.finished()?;
-        Ok(state)
-    }
+/// What one muscle's part of a tick had to saturate.
+fn flags<S>(stimulated: &Stimulated<S>, reached: bool) -> ControlStatus {
+    let mut status = ControlStatus::empty();
+    status.set(ControlStatus::UNREACHABLE, stimulated.at_most);
+    status.set(ControlStatus::LEAD_CLIPPED, stimulated.lead_clipped);
+    status.set(ControlStatus::PULSE_UNREACHABLE, !reached);
+    status
 }

@@ -2,7 +2,7 @@
 
 use super::gain_estimate::GainParams;
 use super::limb::LimbParams;
-use super::path::{AngleRange, PathParams};
+use super::path_params::{AngleRange, PathParams};
 use super::pi::PiParams;
 use crate::beyond_paper::fatigue::FatigueParams;
 use crate::beyond_paper::recruitment_curve::{GREATEST_STRENGTH, RecruitmentCurveParams};

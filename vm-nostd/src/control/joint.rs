@@ -2,7 +2,8 @@
 //!
 //! τ_j = Σ_i F_i r_ij over the muscles i, with the moment arms r of [`path`](super::path).
 
-use super::path::{AngleRange, Axis, Path, PathParams, Placed, count};
+use super::path::{Axis, Path, Placed};
+use super::path_params::{AngleRange, PathParams, count};
 use crate::checksum::Checksum;
 use crate::error::{ParameterError, within};
 use crate::params::MuscleParams;

@@ -28,7 +28,7 @@
 //! L_se0, at [`MuscleOnJoint::optimal_angle`]; L_max = 1.4; no pennation.
 
 use super::joint::JointMuscle;
-use super::path::{Action, AngleRange, ORDER, PathParams, RADIANS};
+use super::path_params::{Action, AngleRange, ORDER, PathParams, RADIANS};
 use crate::params::class::Class;
 use crate::params::presets::human_vm4::{ELEMENTS, FAST, SLOW};
 use crate::params::{FiberParams, MuscleParams};

@@ -3,7 +3,8 @@
 //! τ = J a + B v + G sin(q - q_hang), with the inertia J about the joint, damping B, and G = m g l
 //! of the limb's weight at its centre's distance from the joint.
 
-use super::path::{AngleRange, Axis};
+use super::path::Axis;
+use super::path_params::AngleRange;
 use crate::error::{ParameterError, within};
 use crate::scalar::Scalar;
 use crate::scalar::float::tangent;

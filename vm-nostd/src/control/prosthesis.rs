@@ -7,7 +7,7 @@
 use super::envelope::{Envelope, EnvelopeParams, EnvelopeState};
 use super::joint::{Joint, JointError, JointMuscle, JointStatus, TORQUE_UNIT};
 use super::limit::{CommandLimits, Limited, Limiter};
-use super::path::{AngleRange, PathParams};
+use super::path_params::{AngleRange, PathParams};
 use super::saved::{Parts, fingerprint};
 use crate::checksum::Checksum;
 use crate::error::ParameterError;
