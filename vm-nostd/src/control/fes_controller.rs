@@ -14,11 +14,14 @@ use super::lead::{Lead, LeadParams};
 use super::limb::Limb;
 use super::pi::{Pi, Saturated};
 use crate::beyond_paper::fatigue::{Fatigue, FatigueParams};
+use crate::beyond_paper::recruitment_curve::Pulse;
 use crate::beyond_paper::steady::SteadyFes;
 use crate::checksum::Checksum;
 use crate::error::ParameterError;
 use crate::params::MuscleParams;
 use crate::scalar::Scalar;
+use crate::scalar::constant::Constant;
+use crate::status::Status;
 use crate::summed::{Summed, summed};
 use crate::tick::lag::Lag;
 use crate::tick::range::Range;
@@ -48,6 +51,8 @@ summed! {
     sum only
 }
 
+/// Amplitude and width of a pulse that is none.
+const NO_PULSE: Constant = Constant::new(0.0);
 /// Greatest velocity (rad/s) and acceleration (rad/s²) of a target.
 const MOST_MOTION: f64 = 100.0;
 /// Greatest torque (N m) of a target, and that is measured: of an artefact no more stays in the
@@ -181,26 +186,31 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         let posture = self.joint.posture([state.angle]);
         let [forces, forward] = [torque, forward]
             .map(|torque| self.joint.forces_for(&posture, &self.cocontraction.shares(torque)));
-        let driven = [0, 1].map(|i| {
+        let none = S::quantity_constant(&NO_PULSE);
+        let mut pulses = [Pulse { amplitude: none, width: none }; 2];
+        let mut activations = [S::ZERO; 2];
+        let mut muscles = [Status::empty(); 2];
+        let mut at_most = [false; 2];
+        for i in 0..2 {
             let (inverse, path) = (&mut state.inverses[i], posture.muscles[i].path_length);
             let stimulated =
                 self.inverses[i].step(inverse, forces[i], forward[i], path, self.frequency);
             let (pulse, reached) = self.electrodes[i].pulse(stimulated.activation);
             status |= flags(&stimulated, reached);
-            (stimulated, pulse)
-        });
-        let at_most = driven.each_ref().map(|(stimulated, _)| stimulated.at_most);
+            (activations[i], pulses[i]) = (stimulated.activation, pulse);
+            (muscles[i], at_most[i]) = (stimulated.status, stimulated.at_most);
+        }
         state.saturated = Saturated {
             above: at_most[0] || (limited && torque >= self.torque.most),
             below: at_most[1] || (limited && torque <= self.torque.least),
         };
         status |= self.learn(state, torque, fed_back, limited);
         FesCommand {
-            activations: driven.each_ref().map(|(stimulated, _)| stimulated.activation),
-            pulses: driven.each_ref().map(|(_, pulse)| *pulse),
+            activations,
+            pulses,
             torque: self.joint.quantity(torque),
             gain: S::of(state.gain),
-            muscles: driven.each_ref().map(|(stimulated, _)| stimulated.status),
+            muscles,
             status,
         }
     }

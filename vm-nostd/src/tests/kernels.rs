@@ -129,8 +129,8 @@ fn the_readme_has_the_table_of_kernels() {
         writeln!(table, "| {kernel} | {arithmetic} | {range} | {bound} | {unit} | {tested} |")
             .expect("a text");
     }
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
-    let readme = std::fs::read_to_string(path).expect("the README");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/KERNELS.md");
+    let readme = std::fs::read_to_string(path).expect("the table");
     let (start, end) = ("<!-- kernels -->\n", "<!-- /kernels -->");
     let (before, rest) = readme.split_once(start).expect("the table's start");
     let (written, after) = rest.split_once(end).expect("the table's end");
