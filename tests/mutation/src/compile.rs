@@ -1,6 +1,7 @@
 //! Builds a package's tests with all mutants in them, leaving out those that do not compile.
 
 use crate::mutant::Mutant;
+use crate::remembered::Remembered;
 use crate::weave::{Woven, weave};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -161,10 +162,12 @@ fn viable(
     }
 }
 
-/// The tests with all mutants. `root` has the sources as they are, `tree` is a copy.
+/// The tests with all mutants. `root` has the sources as they are, `tree` is a copy; in `known` is
+/// what builds before have found out.
 pub fn woven(
     root: &Path,
     tree: &Path,
+    known: &Path,
     packages: &[&str],
     mutants: &[Mutant],
 ) -> Result<Built, String> {
@@ -176,11 +179,12 @@ pub fn woven(
     let mut files: BTreeSet<String> = mutants.iter().map(|mutant| mutant.file.clone()).collect();
     // Functions that lose their `const` are called from anywhere in the package.
     files.insert(format!("{library}/lib.rs"));
-    let mut built = Built::default();
-    let mut left_out = HashSet::new();
-    let mut constant = BTreeSet::new();
+    let texts = files.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
+    let memory = Remembered::file(known, mutants, &texts)?;
+    let Remembered { mut unviable, mut apart, mut constant } = Remembered::read(&memory);
     for count in 1..=MOST_BUILDS {
         let mut texts: BTreeMap<&str, Woven> = BTreeMap::new();
+        let left_out: HashSet<usize> = unviable.keys().chain(apart.keys()).copied().collect();
         for file in &files {
             let of_file = mutants.iter().enumerate().filter(|(_, mutant)| mutant.file == *file);
             let of_file: Vec<_> = of_file.collect();
@@ -203,12 +207,11 @@ pub fn woven(
             if programs.is_empty() {
                 return Err(format!("no programs:\n{log}"));
             }
-            built.programs = programs;
             for woven in texts.into_values() {
-                built.apart.extend(woven.apart);
-                built.unviable.extend(woven.unviable);
+                apart.extend(woven.apart);
+                unviable.extend(woven.unviable);
             }
-            return Ok(built);
+            return Ok(Built { programs, unviable, apart });
         }
         let before = (left_out.len(), constant.len());
         for complaint in &complaints {
@@ -219,24 +222,28 @@ pub fn woven(
             let Some((mutants, is_replacement)) = blamed(complaint, &texts) else { continue };
             for mutant in mutants {
                 if is_replacement {
-                    built.unviable.insert(mutant, complaint.message.clone());
+                    unviable.insert(mutant, complaint.message.clone());
                 } else {
-                    built.apart.insert(mutant, format!("does not weave: {}", complaint.message));
+                    apart.insert(mutant, format!("does not weave: {}", complaint.message));
                 }
-                left_out.insert(mutant);
             }
         }
+        let now =
+            (unviable.keys().chain(apart.keys()).collect::<HashSet<_>>().len(), constant.len());
         eprintln!(
             "build {count}: {} errors; {} mutants left out, {} functions evaluated",
             complaints.len(),
-            left_out.len(),
-            constant.len()
+            now.0,
+            now.1
         );
-        if before == (left_out.len(), constant.len()) {
+        if before == now {
             let all = complaints.iter().map(|c| format!("{} {:?}", c.message, c.spans));
             let all: Vec<String> = all.collect();
             return Err(format!("no mutant is to blame for:\n{}\n{log}", all.join("\n")));
         }
+        let remembered = Remembered { unviable, apart, constant };
+        remembered.write(&memory)?;
+        Remembered { unviable, apart, constant } = remembered;
     }
     Err(format!("does not compile after {MOST_BUILDS} builds"))
 }

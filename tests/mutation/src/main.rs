@@ -3,6 +3,7 @@
 mod compile;
 mod mutant;
 mod outcomes;
+mod remembered;
 mod report;
 mod suite;
 mod syntax;
@@ -114,7 +115,7 @@ fn chosen(
     sources: Vec<Source>,
     again: bool,
 ) -> Result<(), String> {
-    let built = compile::woven(&places.root, &places.tree, packages, list)?;
+    let built = compile::woven(&places.root, &places.tree, &places.known, packages, list)?;
     let log = places.reached();
     let mut tests = suite::trace(&built.programs, &log)?;
     eprintln!(

@@ -191,10 +191,17 @@ fn next(world: &mut World, chance: &mut Chance, messages: &mut u64) {
     }
 }
 
+/// So many messages have every kind of failure among them.
+const SAMPLE: u64 = 200_000;
+
+fn count() -> u64 {
+    let count = std::env::var("VM_MESSAGES").ok().and_then(|text| text.parse().ok());
+    count.unwrap_or(SAMPLE)
+}
+
 /// Says what `next` says until enough was said.
 fn say(mut world: World, next: fn(&mut World, &mut Chance, &mut u64)) -> World {
-    let count = std::env::var("VM_MESSAGES").ok().and_then(|text| text.parse().ok());
-    let count: u64 = count.unwrap_or(200_000);
+    let count = count();
     let started = std::time::Instant::now();
     let mut chance = Chance(0x0dd_ba11_5eed);
     let mut messages = 0;
@@ -228,6 +235,10 @@ fn whatever_is_said_no_limit_is_broken_at_the_electrodes() {
 #[test]
 fn whatever_is_said_to_a_controller_no_limit_is_broken_at_the_electrodes() {
     let world = say(World::controlled(), next_controlled);
+    if count() < SAMPLE {
+        println!("SKIPPED: whether each fault was seen, in less than {SAMPLE} messages");
+        return;
+    }
     for fault in [
         Fault::SensorMissing,
         Fault::SensorTime,
