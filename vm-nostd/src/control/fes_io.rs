@@ -40,7 +40,8 @@ pub struct Target<S: Scalar> {
     pub velocity: S,
     /// Its acceleration, rad/s².
     pub acceleration: S,
-    /// Torque, N m, in addition to that of the motion; with [`Measured::Torque`] the only one.
+    /// Torque, N m, in addition to that of the motion; with
+    /// [`Measured::Torque`](super::Measured::Torque) the only one.
     pub torque: S::Quantity,
 }
 
@@ -49,7 +50,7 @@ pub struct Target<S: Scalar> {
 pub struct Sensors<S: Scalar> {
     /// Angle, rad.
     pub angle: S,
-    /// Torque of the muscles, N m; only used with [`Measured::Torque`].
+    /// Torque of the muscles, N m; only used with [`Measured::Torque`](super::Measured::Torque).
     pub torque: S::Quantity,
 }
 

@@ -25,8 +25,8 @@ pub struct FesControllerState<S: Scalar> {
 impl<S: Scalar> FesControllerState<S> {
     pub(super) const OWN: usize =
         1 + 4 + 2 * S::LAG_STATE_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
-    /// Words of a saved state without fatigue; [`FesController::saved_words`] has those of a
-    /// controller.
+    /// Words of a saved state without fatigue;
+    /// [`FesController::saved_words`](super::FesController::saved_words) has those of a controller.
     pub const LEAST_SAVED_WORDS: usize = Self::OWN;
 
     /// Estimated gain.
@@ -34,7 +34,8 @@ impl<S: Scalar> FesControllerState<S> {
         S::of(self.gain)
     }
 
-    /// Its bits, for comparison; [`FesController::save`] adds the fingerprints.
+    /// Its bits, for comparison; [`FesController::save`](super::FesController::save) adds the
+    /// fingerprints.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let Self { target, angle, measured, expected, feedback, gain, saturated, inverses } = self;
         let own = [*target, *angle, *measured].map(S::to_bits);
@@ -45,7 +46,7 @@ impl<S: Scalar> FesControllerState<S> {
             .chain(inverses.iter().flat_map(InverseState::words))
     }
 
-    /// Checksum of all words, see [`FesController::checksum`].
+    /// Checksum of all words, see [`FesController::checksum`](super::FesController::checksum).
     pub fn checksum(&self) -> u32 {
         let mut checksum = Checksum::EMPTY;
         self.words().for_each(|word| word.sum(&mut checksum));
