@@ -86,7 +86,9 @@ fn check(stride: i64) {
     let mut report = String::new();
     for row in rows() {
         let found = largest_error(&row.arguments, stride, |number| (row.error)(row.unit, number));
-        let verdict = if found <= row.bound && row.bound <= 2.0 * found {
+        // The few samples of a build with assertions do not find the largest error.
+        let is_tight = row.bound <= 2.0 * found || cfg!(debug_assertions);
+        let verdict = if found <= row.bound && is_tight {
             "held"
         } else if found <= row.bound {
             "STALE: the bound is more than twice the error"
