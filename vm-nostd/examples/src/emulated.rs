@@ -6,8 +6,8 @@ mod inputs;
 
 pub use inputs::{Integers, TICKS, at};
 
-use semihosting::io::{Write, stdout};
-use semihosting::process::ExitCode;
+use cortex_m_semihosting::debug::{EXIT_FAILURE, EXIT_SUCCESS, exit};
+use cortex_m_semihosting::hio::hstdout;
 use vm_nostd::{FesMuscle, Input, Scalar, WordsError};
 
 /// Steps a muscle from words through all inputs. Each tick writes force, length, velocity, relative
@@ -19,7 +19,7 @@ pub fn run<S: Scalar<Bits = u32>>(
     let stepped = || {
         let muscle = muscle.ok()?;
         let mut state = muscle.rest_in_range(input(at(0)).path_length)?;
-        let mut host = stdout().ok()?;
+        let mut host = hstdout().ok()?;
         for tick in 0..TICKS {
             let output = muscle.step(&mut state, input(at(tick)));
             let words = [
@@ -35,11 +35,16 @@ pub fn run<S: Scalar<Bits = u32>>(
         }
         Some(())
     };
-    let code = if stepped().is_some() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
-    code.exit_process()
+    end(if stepped().is_some() { EXIT_SUCCESS } else { EXIT_FAILURE })
+}
+
+fn end(status: cortex_m_semihosting::debug::ExitStatus) -> ! {
+    loop {
+        exit(status);
+    }
 }
 
 #[panic_handler]
 fn on_panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    ExitCode::FAILURE.exit_process()
+    end(EXIT_FAILURE)
 }
