@@ -47,10 +47,8 @@ impl AngleWatch {
         };
         let most_age_us = u64::from(limits.angle_ms) * 1000;
         self.age_us = self.age_us.saturating_add(tick_us.into());
-        if self.age_us > most_age_us {
-            // The next reading begins a series.
-            self.last = None;
-        }
+        // The next reading begins a series; that it comes in this very tick is no excuse.
+        let is_too_old = self.age_us > most_age_us && self.last.take().is_some();
         let before = self.last;
         let mut wrong = None;
         if let Some(reading) = observed.reading {
@@ -76,6 +74,8 @@ impl AngleWatch {
         let beyond = limits.angle_beyond_mrad.cast_signed().saturating_mul(1000);
         if !(least.saturating_sub(beyond)..=most.saturating_add(beyond)).contains(&angle_urad) {
             Some(Fault::SensorRange)
+        } else if is_too_old {
+            Some(Fault::SensorMissing)
         } else if wrong.is_some() {
             wrong
         } else if self.stuck_us > u64::from(limits.stuck_ms) * 1000 {

@@ -57,6 +57,14 @@ fn a_reading_is_in_force_for_its_limit_and_no_longer() {
 }
 
 #[test]
+fn a_reading_of_the_tick_in_which_the_last_is_too_old_is_late_and_begins_a_series() {
+    let mut bench = Bench::begun();
+    assert_eq!(bench.after(30, 30_000, 1_100_000), None);
+    assert_eq!(bench.after(31, 7, 1_900_000), Some(Fault::SensorMissing));
+    assert_eq!(bench.after(10, 10_000, 1_900_000), None);
+}
+
+#[test]
 fn angles_end_a_bit_beyond_the_joints_range() {
     for (angle_urad, wrong) in
         [(-175_000, false), (-175_001, true), (2_175_000, false), (2_175_001, true)]
