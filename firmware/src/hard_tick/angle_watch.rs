@@ -20,6 +20,11 @@ const NOISE_URAD: u64 = 50_000;
 /// Clocks may differ by one in this many.
 const CLOCKS_DIFFER: i64 = 1000;
 
+/// Stamps that are closer than this contradict a period, µs.
+pub(crate) const fn closest_us(period_us: u32) -> u32 {
+    period_us / 2
+}
+
 /// Watches readings.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AngleWatch {
@@ -102,7 +107,7 @@ impl AngleWatch {
         self.late_us = late_us - late_us.clamp(-forgotten_us, forgotten_us);
         let most_us = u64::from(limits.angle_ms) * 1000;
         // Backwards is far ahead.
-        if stamped_us < observed.period_us / 2 || self.late_us.unsigned_abs() > most_us {
+        if stamped_us < closest_us(observed.period_us) || self.late_us.unsigned_abs() > most_us {
             // What follows is a series of its own.
             self.late_us = 0;
             return Some(Fault::SensorTime);

@@ -7,6 +7,7 @@
 use crate::between::guarded::{Guarded, Sum};
 use crate::between::motion::{AngleReading, Target};
 use crate::config::TICK_US;
+use crate::hard_tick::angle_watch::closest_us;
 use crate::hard_tick::placed_controller::{PlacedController, Stepped};
 use vm_nostd::Checksum;
 
@@ -73,12 +74,16 @@ impl ClosedLoop {
         (self.target, self.target_age_us) = (Some(target), 0);
     }
 
-    /// A new reading, of a sensor of this period (µs).
-    pub(crate) fn take(&mut self, reading: AngleReading, period_us: u32) {
+    /// A new reading, of a sensor of this period (µs), of a joint that is this fast at most
+    /// (mrad/s).
+    pub(crate) fn take(&mut self, reading: AngleReading, period_us: u32, most_mrad_s: u32) {
         // What came longer ago may have the stamp of another clock.
         let is_recent = self.course_age_us <= u64::from(TELLING * period_us);
         let before = self.course.as_ref().filter(|_| is_recent).and_then(Guarded::get);
         let speed = before.map_or(0.0, |before| speed(&before.reading, &reading, period_us));
+        // What was wrong before arming is no more than that: nothing is to follow from it.
+        let most = most_mrad_s as f32 * 1e-3;
+        let speed = speed.clamp(-most, most);
         let most_us = PREDICTED * period_us;
         self.course = Some(Guarded::new(Course { reading, speed, most_us }));
         self.course_age_us = 0;
@@ -143,7 +148,7 @@ impl ClosedLoop {
 /// Speed from one reading to the next, rad/s; 0 if their stamps do not tell it.
 fn speed(before: &AngleReading, reading: &AngleReading, period_us: u32) -> f32 {
     let us = reading.time_us.wrapping_sub(before.time_us);
-    if us == 0 || us > TELLING * period_us {
+    if us < closest_us(period_us) || us > TELLING * period_us {
         return 0.0;
     }
     // µrad/µs; a difference of angles that are within reason is exact.

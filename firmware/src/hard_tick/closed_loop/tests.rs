@@ -19,6 +19,7 @@ impl ClosedLoop {
 }
 
 const PERIOD_US: u32 = 10 * TICK_US;
+const MOST_MRAD_S: u32 = 20_000;
 
 fn reading(time_us: u32, angle_urad: i32) -> AngleReading {
     AngleReading { time_us, angle_urad }
@@ -29,11 +30,11 @@ fn the_angle_goes_on_for_two_periods_and_then_stays() {
     let mut closed_loop = ClosedLoop::new();
     assert_eq!(closed_loop.angle(), None);
     // A clock that wraps around between the two.
-    closed_loop.take(reading(u32::MAX - 3, 1_000_000), PERIOD_US);
+    closed_loop.take(reading(u32::MAX - 3, 1_000_000), PERIOD_US, MOST_MRAD_S);
     assert_eq!(closed_loop.angle(), Some(1.0), "one reading has no speed");
     closed_loop.age();
     assert_eq!(closed_loop.angle(), Some(1.0));
-    closed_loop.take(reading(PERIOD_US - 4, 1_010_000), PERIOD_US);
+    closed_loop.take(reading(PERIOD_US - 4, 1_010_000), PERIOD_US, MOST_MRAD_S);
     for tick in 0..60 {
         let expected = 1.01 + 0.01 * f64::from(tick.min(20)) / 10.0;
         let angle = f64::from(closed_loop.angle().expect("an angle"));
@@ -42,19 +43,33 @@ fn the_angle_goes_on_for_two_periods_and_then_stays() {
     }
 }
 
-/// Stamps that are equal, go back, or are far apart, tell no speed.
+/// Readings of before arming may jump: an angle goes on as fast as a joint can, and no faster.
+#[test]
+fn a_jump_is_not_followed_faster_than_the_joint_moves() {
+    for (from_urad, to_urad, sign) in [(0, 1_000_000, 1.0), (i32::MAX, 1_000_000, -1.0)] {
+        let mut closed_loop = ClosedLoop::new();
+        closed_loop.take(reading(0, from_urad), PERIOD_US, MOST_MRAD_S);
+        closed_loop.take(reading(PERIOD_US, to_urad), PERIOD_US, MOST_MRAD_S);
+        (0..PERIOD_US / TICK_US).for_each(|_| closed_loop.age());
+        let expected = 1.0 + sign * 20.0 * PERIOD_US as f32 * 1e-6;
+        let angle = closed_loop.angle().expect("an angle");
+        assert!((angle - expected).abs() < 1e-6, "{angle} for {expected}");
+    }
+}
+
+/// Stamps that are equal, too close, go back, or are far apart, tell no speed.
 #[test]
 fn stamps_that_tell_no_speed_are_not_followed() {
-    for time_us in [5_000, 4_999, 5_000 + 4 * PERIOD_US + 1] {
+    for time_us in [5_000, 4_999, 5_001, 5_000 + PERIOD_US / 2 - 1, 5_000 + 4 * PERIOD_US + 1] {
         let mut closed_loop = ClosedLoop::new();
-        closed_loop.take(reading(5_000, 1_000_000), PERIOD_US);
-        closed_loop.take(reading(time_us, 1_010_000), PERIOD_US);
+        closed_loop.take(reading(5_000, 1_000_000), PERIOD_US, MOST_MRAD_S);
+        closed_loop.take(reading(time_us, 1_010_000), PERIOD_US, MOST_MRAD_S);
         closed_loop.age();
         assert_eq!(closed_loop.angle(), Some(1.01), "{time_us}");
     }
     let mut closed_loop = ClosedLoop::new();
-    closed_loop.take(reading(5_000, 1_000_000), PERIOD_US);
-    closed_loop.take(reading(5_000 + 4 * PERIOD_US, 1_010_000), PERIOD_US);
+    closed_loop.take(reading(5_000, 1_000_000), PERIOD_US, MOST_MRAD_S);
+    closed_loop.take(reading(5_000 + 4 * PERIOD_US, 1_010_000), PERIOD_US, MOST_MRAD_S);
     closed_loop.age();
     assert!(closed_loop.angle() > Some(1.01));
 }
@@ -66,9 +81,9 @@ fn a_reading_after_a_pause_has_no_speed() {
         [(4 * PERIOD_US / TICK_US, true), (4 * PERIOD_US / TICK_US + 1, false)]
     {
         let mut closed_loop = ClosedLoop::new();
-        closed_loop.take(reading(5_000, 1_000_000), PERIOD_US);
+        closed_loop.take(reading(5_000, 1_000_000), PERIOD_US, MOST_MRAD_S);
         (0..ticks).for_each(|_| closed_loop.age());
-        closed_loop.take(reading(6_000, 1_001_000), PERIOD_US);
+        closed_loop.take(reading(5_000 + PERIOD_US, 1_001_000), PERIOD_US, MOST_MRAD_S);
         closed_loop.age();
         assert_eq!(closed_loop.angle() != Some(1.001), is_followed, "{ticks}");
     }
@@ -85,7 +100,7 @@ fn a_prediction_is_nearer_than_the_last_reading() {
     for us in (0..2_000_000).step_by(TICK_US as usize) {
         if us % PERIOD_US == 0 {
             last = angle(us);
-            closed_loop.take(reading(us, (last * 1e6) as i32), PERIOD_US);
+            closed_loop.take(reading(us, (last * 1e6) as i32), PERIOD_US, MOST_MRAD_S);
         }
         if us >= 2 * PERIOD_US {
             let error = f64::from(closed_loop.angle().expect("an angle")) - angle(us);
@@ -104,7 +119,7 @@ fn targets_go_on_at_their_velocity_and_expire() {
     closed_loop.age();
     assert_eq!(closed_loop.target_age_us(), 0, "nothing follows it yet");
     closed_loop.aim(aimed);
-    closed_loop.take(reading(0, 1_000_000), PERIOD_US);
+    closed_loop.take(reading(0, 1_000_000), PERIOD_US, MOST_MRAD_S);
     let mut placed = elbow();
     closed_loop.follow(&mut placed).expect("both");
     assert_eq!(closed_loop.run, Run::Ticks);
@@ -127,7 +142,7 @@ fn a_bit_that_is_lost_of_target_or_reading_is_seen() {
     let mut closed_loop = ClosedLoop::new();
     assert!(closed_loop.is_intact());
     closed_loop.aim(Guarded::new(Target::default()));
-    closed_loop.take(reading(0, 1_000_000), PERIOD_US);
+    closed_loop.take(reading(0, 1_000_000), PERIOD_US, MOST_MRAD_S);
     assert!(closed_loop.is_intact());
     let mut placed = elbow();
     let mut lost = closed_loop.clone();
