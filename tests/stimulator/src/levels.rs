@@ -5,7 +5,7 @@ use crate::device::{Memory, Numbers};
 use crate::electrodes::{Converter, Pin, SCALE, Shared, stage};
 use crate::explorer::choose;
 use firmware::link::{
-    Answer, Info, Message, NO_SESSION, Receiver, Request, SessionNumber, Traced, encode,
+    Answer, Info, Message, NO_SESSION, Receiver, Refusal, Request, SessionNumber, Traced, encode,
 };
 use firmware::safety::Fault;
 use firmware::{
@@ -78,6 +78,8 @@ pub struct Levels {
     sequence: Cell<u16>,
     /// Messages to the host, in order.
     pub answers: RefCell<Vec<(u16, Answer<'static>)>>,
+    /// A request found no room: the host may send it again.
+    pub refused_for_room: Cell<bool>,
     /// Outputs of rows, in order.
     pub traces: RefCell<Vec<Traced>>,
 }
@@ -136,6 +138,7 @@ impl Levels {
             session: Cell::new(NO_SESSION),
             sequence: Cell::new(0),
             answers: RefCell::default(),
+            refused_for_room: Cell::new(false),
             traces: RefCell::default(),
         });
         CURRENT.set(Some(Rc::clone(&levels)));
@@ -329,6 +332,10 @@ impl Levels {
                         let Info { session, .. } = info;
                         self.session.set(session);
                         Answer::Info(info)
+                    }
+                    Answer::Refused(Refusal::NoRoom { .. }) => {
+                        self.refused_for_room.set(true);
+                        return;
                     }
                     Answer::Refused(refusal) => {
                         self.fault(|| format!("{refusal:?}"));

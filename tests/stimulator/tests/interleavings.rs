@@ -7,13 +7,14 @@
 //! again: 1 where it is not set. A run leaves 7 KB behind, for what levels hand each other are
 //! statics: with 2 there have to be 8 GB.
 
-use firmware::link::{Answer, Readings, Request, RowInputs};
+use firmware::link::{AngleReading, Answer, ControlUpload, Readings, Request, RowInputs};
 use firmware::safety::{CHANNELS, Fault, State};
 use firmware::{Limits, Stimulus};
 use std::rc::Rc;
 use stimulator_tests::device::LIMITS as BOARD;
 use stimulator_tests::explorer::{choose, explore};
 use stimulator_tests::host::{READINGS, STIMULUS};
+use stimulator_tests::joint;
 use stimulator_tests::levels::{Levels, TICK};
 
 /// Amplitudes of before and after a fault come at once.
@@ -294,4 +295,71 @@ fn whatever_interrupts_whatever_no_order_outcome_row_or_trace_is_lost_or_doubled
         "{one} interleavings of queues with a tick less and a pulse, {many} with {ticks} ticks"
     );
     assert!(one + many > 50);
+}
+
+/// The sensor's period, the most that is noise of a joint that does not move, and its share of an
+/// angle.
+const ANGLES_US: u32 = 1000;
+const NOISE_URAD: i32 = 50_000;
+const STEP_URAD: i32 = NOISE_URAD / 10;
+/// More than can wait.
+const ANGLES: u32 = 10;
+
+/// Angles of a controlled joint, with ticks between any two accesses of the link. The tick takes
+/// the newest of those that wait: one that comes twice, or after a newer one, contradicts its time
+/// stamp; and the one that comes after all is as far from the last as noise may be, so that it is a
+/// jump from any before the last.
+fn angles(ticks: u32, left_out: Option<u32>) -> Result<(), String> {
+    let levels = Levels::boot(Limits { angle_speed_mrad_s: 1, ..LIMITS }, true);
+    for (place, upload) in (0..).zip(joint::muscles()) {
+        levels.ask(&Request::Upload { place, upload });
+    }
+    let control = ControlUpload { sensor_period_us: ANGLES_US, ..joint::control() };
+    levels.ask(&Request::Control(Some(control)));
+    let first_us = levels.next_tick_us();
+    let angle = |index: u32, angle_urad| {
+        Request::Angle(AngleReading { time_us: first_us + index * ANGLES_US, angle_urad })
+    };
+    levels.ask(&angle(0, 0));
+    arm(&levels, Fault::Boot);
+    levels.explore(0, ticks);
+    for index in (1..ANGLES).filter(|index| Some(*index) != left_out) {
+        // What was refused for want of room is sent again after a tick.
+        for _ in 0..2 {
+            levels.answers.take();
+            levels.send(&angle(index, index as i32 * STEP_URAD));
+            levels.poll();
+            if !levels.refused_for_room.take() {
+                break;
+            }
+            levels.pass(1);
+        }
+        match levels.answers.take()[..] {
+            [(_, Answer::Done)] => (),
+            ref others => return Err(format!("angle {index} is answered by {others:?}")),
+        }
+    }
+    levels.explore(0, 0);
+    levels.pass(1);
+    levels.ask(&angle(ANGLES, (ANGLES - 1) as i32 * STEP_URAD + NOISE_URAD));
+    levels.pass(1);
+    let Answer::Report(report) = levels.ask(&Request::Report) else {
+        return Err("no report".to_owned());
+    };
+    match (levels.problem(), report.state) {
+        (Some(problem), _) => Err(problem),
+        (None, State::Armed) => Ok(()),
+        (None, other) => Err(format!("{other:?}")),
+    }
+}
+
+#[test]
+fn whatever_interrupts_whatever_the_newest_angle_arrives_once_and_in_order() {
+    let runs = explore(|| angles(interrupts() + 1, None)).expect("the newest angle");
+    println!("{runs} interleavings of the queue of angles");
+    assert!(runs > 500);
+    // The loss of the newest is found; those before it are not missed.
+    let found = explore(|| angles(0, Some(ANGLES - 1))).expect_err("an angle is missing");
+    assert!(found.contains("Latched(SensorJump)"), "{found}");
+    assert_eq!(explore(|| angles(0, Some(ANGLES - 2))), Ok(1));
 }
