@@ -30,8 +30,8 @@ pub struct LoopArgs {
     /// Prints the table as JSON.
     #[arg(long)]
     json: bool,
-    /// Write the rows of these tasks and controllers into host-sim/docs/loop.md of the checkout that
-    /// this program was built in; the others stay.
+    /// Write the rows of these tasks and controllers into host-sim/docs/loop.md of the checkout
+    /// that this program was built in; the others stay.
     #[arg(long)]
     write: bool,
     /// Draws the first patient's run of the first task under every controller, in SVG.

@@ -4,7 +4,8 @@ use super::{MEASURED, Sweep};
 use crate::engine::{Arithmetic, Class};
 use crate::ledger::Ledger;
 
-/// What an accuracy class promises of the unflagged cases of a random sweep over the default ranges.
+/// What an accuracy class promises of the unflagged cases of a random sweep over the default
+/// ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Promise {
     /// Error that few cases exceed, % of F0.

@@ -445,7 +445,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_F32_BASE 248
+#define VM_MUSCLE_F32_BASE 200
 
 /**
  * Each type.
@@ -560,7 +560,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_FIXED_BASE 304
+#define VM_MUSCLE_FIXED_BASE 256
 
 /**
  * Each type.
@@ -675,7 +675,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Bytes of memory of a muscle without fibre types, and of each type.
  */
-#define VM_MUSCLE_F64_BASE 488
+#define VM_MUSCLE_F64_BASE 392
 
 /**
  * Each type.

@@ -13,7 +13,7 @@ arithmetic! {
     Amount = f32,
     Newtons = f32,
     Word = u32,
-    MUSCLE_BASE = 248,
+    MUSCLE_BASE = 200,
     MUSCLE_PER_TYPE = 176,
     UNITS_BASE = 4336,
     UNITS_PER_TYPE = 144,

@@ -13,7 +13,7 @@ arithmetic! {
     Amount = f64,
     Newtons = f64,
     Word = u64,
-    MUSCLE_BASE = 488,
+    MUSCLE_BASE = 392,
     MUSCLE_PER_TYPE = 352,
     UNITS_BASE = 8136,
     UNITS_PER_TYPE = 288,

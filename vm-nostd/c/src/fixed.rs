@@ -70,7 +70,7 @@ arithmetic! {
     Amount = i32,
     Newtons = i32,
     Word = u32,
-    MUSCLE_BASE = 304,
+    MUSCLE_BASE = 256,
     MUSCLE_PER_TYPE = 208,
     UNITS_BASE = 5928,
     UNITS_PER_TYPE = 160,

@@ -130,7 +130,8 @@ pub(super) fn advance_all<'a, S: Scalar, const STIMULATED: bool, const N: usize>
     all
 }
 
-/// Advances some types by one tick, side by side. Af and sag depend on f_env if `STIMULATED`, otherwise on f_eff.
+/// Advances some types by one tick, side by side. Af and sag depend on f_env if `STIMULATED`,
+/// otherwise on f_eff.
 #[inline(always)]
 fn advance<S: Scalar, const STIMULATED: bool, const N: usize, const SOME: usize>(
     types: [LumpedInput<'_, S>; SOME],
