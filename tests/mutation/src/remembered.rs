@@ -1,4 +1,4 @@
-//! What the compiler has said of the mutants of some sources: an interrupted run does not ask again.
+//! What the compiler said of the mutants of some sources: an interrupted run does not ask again.
 
 use crate::mutant::Mutant;
 use std::collections::hash_map::DefaultHasher;
