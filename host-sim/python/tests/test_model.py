@@ -107,8 +107,8 @@ import vm_nostd as vm
 path = sys.argv[1]
 paper = vm.Muscle(path, mode="fes", arithmetic="f64")
 WORK = {
-    "run": lambda: paper.run(np.broadcast_to(1.0, 3_000_000), 0.16, 30),
-    "steady": lambda: paper.steady().activation_for(np.broadcast_to(50.0, 3_000_000), 0.16, 30),
+    "run": lambda: paper.run(np.broadcast_to(1.0, 8_000_000), 0.16, 30),
+    "steady": lambda: paper.steady().activation_for(np.broadcast_to(50.0, 8_000_000), 0.16, 30),
     "fatigue": lambda: tired.run(np.broadcast_to(1.0, 30_000_000)),
     "fit": lambda: vm.fit(
         paper,
@@ -142,7 +142,7 @@ def test_long_work_is_interrupted(work):
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout.readline() == "works\n"
-            time.sleep(1)
+            time.sleep(0.3)
             process.send_signal(signal.SIGINT)
             # None of it ends in so short a time by itself.
             assert process.communicate(timeout=8)[0] == "interrupted\n"
