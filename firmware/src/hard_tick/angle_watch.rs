@@ -52,7 +52,7 @@ impl AngleWatch {
         };
         let most_age_us = u64::from(limits.angle_ms) * 1000;
         self.age_us = self.age_us.saturating_add(tick_us.into());
-        // The next reading begins a series; that it comes in this very tick is no excuse.
+        // The next reading begins a series. One that comes in this very tick is late, too.
         let is_too_old = self.age_us > most_age_us && self.last.take().is_some();
         let before = self.last;
         let mut wrong = None;

@@ -81,9 +81,9 @@ impl ClosedLoop {
         let is_recent = self.course_age_us <= u64::from(TELLING * period_us);
         let before = self.course.as_ref().filter(|_| is_recent).and_then(Guarded::get);
         let speed = before.map_or(0.0, |before| speed(&before.reading, &reading, period_us));
-        // What was wrong before arming is no more than that: nothing is to follow from it.
+        // Before arming, jumps are no fault: their speed must not be followed afterwards.
         let most = most_mrad_s as f32 * 1e-3;
-        let speed = speed.clamp(-most, most);
+        let speed = speed.max(-most).min(most);
         let most_us = PREDICTED * period_us;
         self.course = Some(Guarded::new(Course { reading, speed, most_us }));
         self.course_age_us = 0;

@@ -312,7 +312,7 @@ impl<'q, A: AngleSensor> Device<'q, A> {
         let reading = read.as_ref().and_then(|read| read.get().copied());
         *is_intact &= read.is_some() == reading.is_some();
         if let Some(reading) = reading {
-            // Without limits, which end everything, the joint does not move.
+            // Damaged limits end in neutral in this tick; until then the angle is held.
             let most_mrad_s = self.controller.limits().map_or(0, |l| l.angle_speed_mrad_s);
             self.closed_loop.take(reading, period_us, most_mrad_s);
         }
