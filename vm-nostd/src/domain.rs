@@ -102,9 +102,10 @@ impl<S: Scalar> Domain<S> {
         );
         let (path_length, p) =
             admit_one(&self.path_length, input.path_length, path_before, S::path_is_finite);
-        let status = a.flags(Status::ACTIVATION_CLIPPED, Status::ACTIVATION_NOT_FINITE)
-            | f.flags(Status::FREQUENCY_CLIPPED, Status::FREQUENCY_NOT_FINITE)
-            | p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE);
+        let status = a
+            .flags(Status::ACTIVATION_CLIPPED, Status::ACTIVATION_NOT_FINITE)
+            .union(f.flags(Status::FREQUENCY_CLIPPED, Status::FREQUENCY_NOT_FINITE))
+            .union(p.flags(Status::PATH_LENGTH_CLIPPED, Status::PATH_LENGTH_NOT_FINITE));
         (Input { activation, path_length, stimulation_frequency }, status)
     }
 }

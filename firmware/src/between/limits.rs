@@ -326,6 +326,14 @@ mod tests {
         assert_eq!(limits.validate(1500, &SCALE), Err(error));
     }
 
+    /// Times that protect a patient do not change by themselves.
+    #[test]
+    fn surface_electrodes_have_half_an_hour_and_a_minutes_rest() {
+        let Limits { session_ms, rest_ms, silence_ms, rows_ms, drives_ms, .. } = Limits::SURFACE;
+        assert_eq!((session_ms, rest_ms), (1_800_000, 60_000));
+        assert_eq!((silence_ms, rows_ms, drives_ms), (100, 50, 1_000));
+    }
+
     #[test]
     fn limits_within_a_scale_are_the_smaller_ones_and_valid() {
         for full_scale_ua in [1_000, 50_000, 100_000, 500_000] {

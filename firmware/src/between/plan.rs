@@ -19,7 +19,7 @@ const MOST_LOAD: u32 = 900;
 pub type PlanQueue = Queue<Guarded<Plan<CHANNELS>>, PLAN_QUEUE>;
 
 /// Capacity of that queue: one plan per tick during the longest pulse and the step before it, when
-/// the pulse timer does not read it. A queue keeps one place free.
+/// the pulse timer does not read it, and one more if it is late. A queue keeps one place free.
 const PLAN_QUEUE: usize = {
     let unread_us = LONGEST_PULSE_US + Step::LONGEST_US;
     unread_us.div_ceil(SHORTEST_TICK_US) as usize + 2

@@ -2,8 +2,11 @@
 
 use crate::between::guarded::{Guarded, Sum};
 use crate::between::limits::Limits;
-use crate::between::plan::Plan;
+use crate::between::plan::{Plan, PlanQueue};
+use crate::between::step::Step;
 use crate::between::stimulus::{Scale, Stimulus};
+use crate::between::waveform::Pulse;
+use crate::config::SHORTEST_TICK_US;
 
 const SCALE: Scale = Scale { full_scale_ua: 50_000, full_scale_counts: 4095 };
 const STIMULUS: Stimulus = Stimulus {
@@ -69,4 +72,17 @@ fn every_field_of_a_plan_is_in_its_checksum() {
     {
         assert!(are_told_apart(one, plan([Some(STIMULUS), None], &other)), "{other:?}");
     }
+}
+
+/// While the pulse timer puts out the longest step and the longest pulse, it reads no plan: one of
+/// each tick waits. There is room for one more, for a timer that is late.
+#[test]
+fn as_many_plans_fit_as_can_wait() {
+    let longest = Stimulus { width_us: 1000, gap_us: 200, recovery: 8, ..STIMULUS };
+    let pulse = Pulse::new(&longest, &SCALE).expect("the longest pulse");
+    let pulse_us: u32 = pulse.phases.iter().map(|phase| u32::from(phase.duration_us)).sum();
+    let unread_us = pulse_us + Step::LONGEST_US;
+    let ticks = |first_us: u32| (first_us..=unread_us).step_by(SHORTEST_TICK_US as usize).count();
+    let waiting = (0..SHORTEST_TICK_US).map(ticks).max().expect("offsets");
+    assert_eq!(PlanQueue::new().capacity(), waiting + 1);
 }

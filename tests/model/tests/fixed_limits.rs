@@ -74,6 +74,23 @@ fn a_path_ranges_over_60_optimal_lengths() {
     assert!(is_refused(&of_path(60.6), "max_path_length: range"));
 }
 
+/// A path that would be longer is cut there, and not refused.
+#[test]
+fn the_path_of_a_soft_tendon_ends_after_60_optimal_lengths() {
+    let params = changed(1.2, |p| {
+        let (tendon, parallel) = (&mut p.elements.tendon, &mut p.elements.parallel);
+        (tendon.stiffness, tendon.toe) = (3.0, 0.03);
+        (parallel.stiffness, parallel.slack_length, parallel.toe) = (10.0, 0.8, 0.046);
+        (p.fascicle_length, p.tendon_length) = (0.02, 0.75);
+    });
+    let (shortest, longest) = params.path_domain();
+    assert!(longest - shortest > 60.0 * 0.02, "{shortest} {longest}");
+    let muscle = FesMuscle::<Fixed, 2>::build(&params, TimeStep::MILLISECOND).expect("valid");
+    let (least, most) = muscle.path_length_range();
+    let range = f64::from(most - least) * 1e-6 / 0.02;
+    assert!((range - 60.0).abs() < 1e-3, "{range}");
+}
+
 /// Of a muscle that rests on its longest path, in `f64`: its fascicles and a quarter more, but no
 /// more than the path, over those of the passive muscle on `max_path_length`.
 fn stretch(params: &Params) -> f64 {

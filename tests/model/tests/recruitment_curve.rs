@@ -186,6 +186,20 @@ fn invalid_pulses_are_clipped_and_flagged() {
     assert_eq!(status, both);
     assert_eq!(curve.amplitude_for(f32::NAN, 200.0).1, PulseStatus::ACTIVATION_NOT_FINITE);
     assert_eq!(curve.width_for(0.5, 7.0), (5000.0, PulseStatus::UNREACHABLE));
+    // A pulse so short that even the greatest amplitude is too little, and one of no length.
+    let unreachable = PulseStatus::UNREACHABLE;
+    assert_eq!(curve.amplitude_for(0.5, 1.0), (500.0, unreachable));
+    assert_eq!(curve.amplitude_for(0.5, 0.0), (500.0, unreachable));
+    // Everything that is wrong is said, also of what is unreachable.
+    let clipped = PulseStatus::AMPLITUDE_CLIPPED | PulseStatus::WIDTH_CLIPPED;
+    assert_eq!(curve.activation(Pulse { amplitude: 501.0, width: 6000.0 }).1, clipped);
+    let of_both = PulseStatus::ACTIVATION_CLIPPED | PulseStatus::WIDTH_CLIPPED | unreachable;
+    assert_eq!(curve.amplitude_for(1.1, -1.0), (500.0, of_both));
+    let of_both = PulseStatus::ACTIVATION_CLIPPED | PulseStatus::AMPLITUDE_CLIPPED;
+    let (width, status) = curve.width_for(1.1, 501.0);
+    assert!((width - 200.0 / (500.0 / 12.0 - 1.0)).abs() < 1e-3, "{width}");
+    assert_eq!(status, of_both);
+    assert_eq!(curve.width_for(1.1, -1.0), (5000.0, of_both | unreachable));
     // None of these recruits anything, and none is flagged.
     assert_eq!(curve.width_for(0.0, 2.0), (5000.0, PulseStatus::empty()));
     assert_eq!(curve.amplitude_for(0.0, 1.0), (500.0, PulseStatus::empty()));
@@ -214,5 +228,24 @@ fn a_saturation_of_1_05_thresholds_is_enough() {
             [100 * microamperes, 105 * microamperes].map(|parts| f64::from(parts) / 1e8);
         let params = RecruitmentCurveParams { threshold, saturation, chronaxie: 2e-4, slope: 2.0 };
         assert_eq!(params.validate(), Ok(()));
+    }
+}
+
+/// Every coefficient is in the checksum, and nothing else.
+#[test]
+fn a_curve_has_a_checksum_of_its_coefficients() {
+    let p =
+        RecruitmentCurveParams { threshold: 4e-3, saturation: 12e-3, chronaxie: 2e-4, slope: 2.0 };
+    let of = |p: &RecruitmentCurveParams| {
+        RecruitmentCurve::<Fixed>::build(p).expect("a curve").checksum()
+    };
+    assert_eq!(of(&p), of(&p.clone()));
+    for other in [
+        RecruitmentCurveParams { threshold: 4.1e-3, ..p },
+        RecruitmentCurveParams { saturation: 12.1e-3, ..p },
+        RecruitmentCurveParams { chronaxie: 2.1e-4, ..p },
+        RecruitmentCurveParams { slope: 2.1, ..p },
+    ] {
+        assert_ne!(of(&other), of(&p), "{other:?}");
     }
 }

@@ -357,7 +357,7 @@ fn angles(ticks: u32, left_out: Option<u32>) -> Result<(), String> {
 fn whatever_interrupts_whatever_the_newest_angle_arrives_once_and_in_order() {
     let runs = explore(|| angles(interrupts() + 1, None)).expect("the newest angle");
     println!("{runs} interleavings of the queue of angles");
-    assert!(runs > 500);
+    assert!(runs > if interrupts() == 0 { 40 } else { 500 });
     // The loss of the newest is found; those before it are not missed.
     let found = explore(|| angles(0, Some(ANGLES - 1))).expect_err("an angle is missing");
     assert!(found.contains("Latched(SensorJump)"), "{found}");

@@ -296,6 +296,29 @@ fn what_does_not_answer_leaves_the_rest_neutral() {
     assert_eq!(shared.borrow().channels, [false; CHANNELS]);
 }
 
+/// A phase that is not preceded by its settling is put out all the same, and nothing switches under
+/// its current.
+#[test]
+fn a_phase_with_current_on_another_channel_switches_first() {
+    let stimulus = Stimulus {
+        amplitude_ua: 10_000,
+        width_us: 200,
+        gap_us: 40,
+        frequency_tenths_pps: 200,
+        recovery: 4,
+    };
+    let [_, phase, ..] = Pulse::new(&stimulus, &SCALE).expect("a legal command").phases;
+    let (mut stage, shared) = stage();
+    for channel in [0, 1] {
+        stage.apply(&Step { output: Some((channel, phase)), duration_us: 1 }).expect("an output");
+        let electrodes = shared.borrow();
+        assert_eq!(electrodes.counts, phase.counts);
+        assert!(electrodes.channels[channel] && electrodes.counts > 0);
+        let late = "a current that does not begin or end with its step";
+        assert!(electrodes.problems.iter().all(|problem| problem == late));
+    }
+}
+
 #[test]
 fn what_a_stimulator_cannot_do_is_named() {
     let good = Stimulus {

@@ -150,6 +150,56 @@ fn what_was_never_stored_or_is_worn_is_not_made_up() {
     }
 }
 
+/// A memory that is worn out: it is neither erased nor written, and says that it was.
+struct Worn(RamFlash<BYTES>);
+
+impl ErrorType for Worn {
+    type Error = Gone;
+}
+
+impl ReadNorFlash for Worn {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Gone> {
+        self.0.read(offset, bytes).map_err(|_| Gone)
+    }
+
+    fn capacity(&self) -> usize {
+        BYTES
+    }
+}
+
+impl NorFlash for Worn {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = BYTES / 2;
+
+    fn erase(&mut self, _from: u32, _to: u32) -> Result<(), Gone> {
+        Ok(())
+    }
+
+    fn write(&mut self, _offset: u32, _bytes: &[u8]) -> Result<(), Gone> {
+        Ok(())
+    }
+}
+
+impl MultiwriteNorFlash for Worn {}
+
+/// What the slot already held is no proof that it was written: the newest content is another.
+#[test]
+fn content_of_before_in_a_worn_slot_is_not_taken_for_stored() {
+    let mut buffer = [0; _];
+    let mut slots = Slots::new(RamFlash::<BYTES>::new(), &mut buffer);
+    slots.store(b"first").expect("a memory");
+    slots.store(b"second").expect("a memory");
+    let memory = slots.into_memory();
+    for content in [b"first".as_slice(), b"third"] {
+        let mut buffer = [0; _];
+        let mut slots = Slots::new(Worn(memory.clone()), &mut buffer);
+        assert!(slots.store(content).is_err(), "{content:?}");
+        assert_eq!(slots.load(), Some(b"second".as_slice()));
+    }
+}
+
 /// A memory whose first reads fail.
 struct Unreadable {
     memory: RamFlash<BYTES>,

@@ -164,7 +164,7 @@ impl<S: Scalar> RecruitmentCurve<S> {
         let (width, w) = self.admit_width(pulse.width);
         let strength = S::of_quantity(amplitude, &self.per_saturation) * self.share(width);
         let excess = (strength - self.threshold).scaled(&self.per_reach);
-        (self.rise(self.activations.clip(excess).0), a | w)
+        (self.rise(self.activations.clip(excess).0), a.union(w))
     }
 
     /// Amplitude (mA) at which a pulse of a given width has an activation; for activation 0, the
@@ -179,9 +179,9 @@ impl<S: Scalar> RecruitmentCurve<S> {
         let wanted = strength.ratio(share.max(S::LEAST));
         let reachable = share > S::ZERO && wanted <= S::of_quantity(most, &self.per_saturation);
         if reachable {
-            (self.amplitudes.clip(wanted.to_quantity(&self.saturation)).0, w | u)
+            (self.amplitudes.clip(wanted.to_quantity(&self.saturation)).0, w.union(u))
         } else {
-            (most, w | u | unreachable(activation))
+            (most, w.union(u).union(unreachable(activation)))
         }
     }
 
@@ -196,9 +196,9 @@ impl<S: Scalar> RecruitmentCurve<S> {
         let most = self.widths.most;
         let reachable = available > strength && wanted <= S::of_quantity(most, &self.per_chronaxie);
         if reachable {
-            (self.widths.clip(wanted.to_quantity(&self.chronaxie)).0, a | u)
+            (self.widths.clip(wanted.to_quantity(&self.chronaxie)).0, a.union(u))
         } else {
-            (most, a | u | unreachable(activation))
+            (most, a.union(u).union(unreachable(activation)))
         }
     }
 

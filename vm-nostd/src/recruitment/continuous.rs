@@ -63,7 +63,7 @@ impl<S: Scalar, const N: usize> Coefficients<S, N> {
 
     /// Steady-state S of a type that fires at a frequency (f0.5).
     pub(crate) fn steady_sag(&self, fiber: &Fiber<S>, frequency: S) -> S {
-        fiber.sag.steady(frequency > S::constant(&FIRING))
+        fiber.sag.steady(frequency >= S::constant(&FIRING))
     }
 }
 
@@ -146,5 +146,32 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
             let weight = weights[i];
             Recruited { activation, weight, change_after_jump: None, compression_weight: weight }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::presets::PAPER_MUSCLE;
+
+    fn coefficients() -> Coefficients<f32, 2> {
+        Coefficients::new(&PAPER_MUSCLE, &(), TimeStep::MILLISECOND).expect("a valid muscle")
+    }
+
+    #[test]
+    fn nothing_is_recruited_without_activation() {
+        for activation in [0.0, 0.0009] {
+            assert_eq!(coefficients().steady(activation), [(0.0, 0.0); 2]);
+        }
+    }
+
+    /// As in a tick: from 0.1 f0.5 on.
+    #[test]
+    fn a_fast_type_sags_from_a_frequency_of_a_tenth_on() {
+        let [_, fast] = PAPER_MUSCLE.fibers;
+        let domain = PAPER_MUSCLE.fascicle_domain();
+        let fiber = Fiber::new(&fast, domain, TimeStep::MILLISECOND);
+        let sag = |frequency| coefficients().steady_sag(&fiber, frequency);
+        assert_eq!([sag(0.099_999), sag(0.1)], [1.76, 0.96]);
     }
 }

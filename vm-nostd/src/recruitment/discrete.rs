@@ -225,3 +225,26 @@ impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::presets::PAPER_MUSCLE;
+    use crate::recruitment::acting_length::FascicleLength;
+    use crate::recruitment::motor_units::UnitSizes;
+
+    /// Words that nobody emitted may name a type that is not there.
+    #[test]
+    fn units_of_a_type_that_is_not_there_do_not_fit() {
+        let sizes = [UnitSizes::Equal(1), UnitSizes::Equal(2)];
+        let units = MotorUnits::<4>::new(&PAPER_MUSCLE, sizes).expect("valid");
+        let step = TimeStep::MILLISECOND;
+        let mut coefficients =
+            Coefficients::<f32, FascicleLength, 4>::new(&PAPER_MUSCLE, &units, step)
+                .expect("valid");
+        let fits = |c: &_| <_ as RecruitmentTick<f32, 2>>::fits(c);
+        assert!(fits(&coefficients));
+        coefficients.units[1].fiber = 2;
+        assert!(!fits(&coefficients));
+    }
+}

@@ -67,11 +67,14 @@ fn stamps_that_tell_no_speed_are_not_followed() {
         closed_loop.age();
         assert_eq!(closed_loop.angle(), Some(1.01), "{time_us}");
     }
-    let mut closed_loop = ClosedLoop::new();
-    closed_loop.take(reading(5_000, 1_000_000), PERIOD_US, MOST_MRAD_S);
-    closed_loop.take(reading(5_000 + 4 * PERIOD_US, 1_010_000), PERIOD_US, MOST_MRAD_S);
-    closed_loop.age();
-    assert!(closed_loop.angle() > Some(1.01));
+    // The closest and the farthest that do.
+    for us in [PERIOD_US / 2, 4 * PERIOD_US] {
+        let mut closed_loop = ClosedLoop::new();
+        closed_loop.take(reading(5_000, 1_000_000), PERIOD_US, MOST_MRAD_S);
+        closed_loop.take(reading(5_000 + us, 1_010_000), PERIOD_US, MOST_MRAD_S);
+        closed_loop.age();
+        assert!(closed_loop.angle() > Some(1.01), "{us}");
+    }
 }
 
 /// So does a reading that came long after the one before, whatever its stamp.
