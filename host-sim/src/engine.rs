@@ -57,7 +57,7 @@ pub enum Class {
     /// Substeps of at most 0.25 ms.
     #[default]
     Standard,
-    /// Substeps of at most 0.1 ms.
+    /// Substeps of at most 0.072 ms, and ticks longer than 0.5 ms in equal parts.
     Fine,
 }
 

@@ -6,8 +6,8 @@
 #include "vm_nostd.h"
 
 /* Words of the muscle, for deltoid_posterior_fes_f32. */
-static const uint32_t deltoid_posterior_fes_f32_words[114] = {
-    0x00000400, 0x00000001, 0x00000002, 0x00000002, 0x00000000, 0x3a83126f, 0x26f67070, 0x3d9b50d0,
+static const uint32_t deltoid_posterior_fes_f32_words[116] = {
+    0x00000400, 0x00000001, 0x00000002, 0x00000002, 0x00000000, 0x3a83126f, 0xf9f45171, 0x3d9b50d0,
     0x3e4a408a, 0x3f03a012, 0x3fce739d, 0xc0fc28f6, 0x3f03a012, 0x3fe5d4fa, 0x3f03a012, 0x3fce739d,
     0x3f19999a, 0x3daaaaab, 0x3ecccccd, 0x3d4ccccd, 0x3d000000, 0x3f893333, 0x3f35999a, 0x3fbc0000,
     0x3f49999a, 0x3f800000, 0x3f800000, 0x3a030a0b, 0x3a8301a9, 0x3eb33333, 0x41200000, 0x45480000,
@@ -21,11 +21,11 @@ static const uint32_t deltoid_posterior_fes_f32_words[114] = {
     0x3fe073e6, 0x416813d9, 0x3f876c8b, 0x3c7b6e51, 0x3ca3d70a, 0xc1a80000, 0x3f0382b5, 0x3cac0831,
     0x3c9df117, 0x4111745d, 0x449246cf, 0x3e05cbbc, 0x3e1c91d1, 0x3c23d70a, 0x3e000000, 0x3e253491,
     0x3c4e3d35, 0x3c9c91d1, 0x00000004, 0x3a83126f, 0x447a0000, 0xc0fc28f6, 0x4384f45d, 0x4384f45d,
-    0x447a0000, 0x30f22f66,
+    0xc005dbbe, 0x447a0000, 0x00000001, 0xd68d9de9,
 };
 
 /* Puts the muscle into memory of `size` bytes. Rest or restore comes next. */
 static inline VmResult deltoid_posterior_fes_f32(VmMuscleF32 *muscle, size_t size, VmError *error) {
-    return vm_f32_from_words(muscle, size, deltoid_posterior_fes_f32_words, 114, 2, VM_MODE_FES,
+    return vm_f32_from_words(muscle, size, deltoid_posterior_fes_f32_words, 116, 2, VM_MODE_FES,
         VM_CLASS_STANDARD, 0.001, error);
 }

@@ -6,8 +6,8 @@
 #include "vm_nostd.h"
 
 /* Words of the muscle, for deltoid_posterior_fes_fixed. */
-static const uint32_t deltoid_posterior_fes_fixed_words[132] = {
-    0x00000400, 0x00000003, 0x00000002, 0x00000002, 0x00000000, 0x3a83126f, 0x9770decd, 0x02507b78,
+static const uint32_t deltoid_posterior_fes_fixed_words[134] = {
+    0x00000400, 0x00000003, 0x00000002, 0x00000002, 0x00000000, 0x3a83126f, 0x896c0196, 0x02507b78,
     0x06070fa4, 0x0083a012, 0x019ce73a, 0xf81eb852, 0x0083a012, 0x01cba9f3, 0x0083a012, 0x019ce73a,
     0x0099999a, 0x55555555, 0x0000001a, 0x00666666, 0x66666666, 0x0000001b, 0x00080000, 0x01126666,
     0x00b5999a, 0x01780000, 0x00c9999a, 0x01000000, 0x01000000, 0x0020c283, 0x004180d5, 0x0059999a,
@@ -23,11 +23,11 @@ static const uint32_t deltoid_posterior_fes_fixed_words[132] = {
     0x008382b5, 0x56041893, 0x00000024, 0x0096a000, 0x4c429420, 0x00000020, 0x4923677d, 0x00000014,
     0x42e5de16, 0x00000021, 0x4e48e8a7, 0x00000021, 0x00028f5c, 0x20000000, 0x00294d24, 0x000338f5,
     0x0004e48f, 0x00000004, 0x00418937, 0x7d000000, 0x00000015, 0xf81eb852, 0x40eb5174, 0x00000024,
-    0x00040eb5, 0x7d000000, 0x00000015, 0x8c18bc74,
+    0x00040eb5, 0xfde89107, 0x7d000000, 0x00000015, 0x00000001, 0xeef1c8d8,
 };
 
 /* Puts the muscle into memory of `size` bytes. Rest or restore comes next. */
 static inline VmResult deltoid_posterior_fes_fixed(VmMuscleFixed *muscle, size_t size, VmError *error) {
-    return vm_fixed_from_words(muscle, size, deltoid_posterior_fes_fixed_words, 132, 2, VM_MODE_FES,
+    return vm_fixed_from_words(muscle, size, deltoid_posterior_fes_fixed_words, 134, 2, VM_MODE_FES,
         VM_CLASS_STANDARD, 0.001, error);
 }

@@ -131,6 +131,7 @@ mod saved;
 mod scalar;
 mod state;
 mod status;
+mod step;
 mod summed;
 #[cfg(test)]
 mod tests;

@@ -1,29 +1,27 @@
-//! A muscle: its coefficients, computed once from the parameters, and the tick.
+//! A muscle: its coefficients, computed once from the parameters.
 
 use crate::checksum::Checksum;
 use crate::domain::{Domain, velocities};
-use crate::equations::force_length::{self, Distance};
-use crate::equations::force_velocity;
 use crate::equations::passive::{Compression, Parallel};
+use crate::equations::tendon::logarithm;
 use crate::equations::yielding::Speed;
 use crate::error::{Limit, ParameterError, within};
 use crate::fiber::Fiber;
-use crate::io::{Input, Output};
-use crate::mechanics::contraction::{Contractile, Contraction, INERTIA, Motion, largest_inertia};
+use crate::io::Output;
+use crate::mechanics::contraction::{Contraction, INERTIA, largest_inertia};
 use crate::params::MuscleParams;
+use crate::params::class::MOST_PARTS;
 use crate::recruitment::{
-    EffectiveLength, FascicleLength, IntramuscularFes, Moment, NaturalContinuous, NaturalDiscrete,
+    EffectiveLength, FascicleLength, IntramuscularFes, NaturalContinuous, NaturalDiscrete,
     Recruitment, RecruitmentTick,
 };
 use crate::saved::{ROUNDING, RestoreError, Saved};
-use crate::scalar::{Arithmetic, Scalar};
+use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::state::State;
 use crate::status::Status;
 use crate::summed::{Summed, summed};
-use crate::tick::course::Course;
 use crate::tick::range::share;
 use crate::tick::time_step::TimeStep;
-use core::array::from_fn;
 
 /// A muscle of `N` fibre types under natural continuous recruitment.
 pub type ContinuousMuscle<S, const N: usize> = Muscle<S, NaturalContinuous, N>;
@@ -51,11 +49,17 @@ summed! {
         pub(crate) compression: Compression<S>,
         pub(crate) contraction: Contraction<S>,
         /// F0, as a factor from relative force to force.
-        force: S::Factor,
+        pub(crate) force: S::Factor,
         max_isometric_force: S::Force,
-        /// Ticks per second.
-        tick_rate: S::Factor,
+        /// Logarithm of the ratio of the scales of tendon and parallel force, cT kT/(c1 k1).
+        scales: S,
+        /// Parts of a tick per second.
+        pub(crate) part_rate: S::Factor,
+        /// Number of parts of a tick; coefficients are those of a part.
+        pub(crate) parts: u8,
     }
+
+    valid: |muscle| (1..=MOST_PARTS).contains(&muscle.parts)
 }
 
 /// Number of bisections for the length at rest: accurate to the last bit in `f32`, nearly so in
@@ -79,6 +83,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         step: TimeStep,
     ) -> Result<Self, ParameterError> {
         params.validate()?;
+        let parts = params.class.parts(step);
+        let step = step.part(parts);
         within(INERTIA, largest_inertia(params, step), 0.0, S::LARGEST_COEFFICIENT)?;
         params.validate_magnitudes(step, S::LARGEST_COEFFICIENT, S::LONGEST_PATH)?;
         within("max_path_length", params.max_path_length, 0.0, S::LONGEST_PATH)?;
@@ -98,7 +104,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             contraction: Contraction::new(params, step),
             max_isometric_force: S::ONE.force(&S::force_factor(params.max_isometric_force())),
             force: S::force_factor(params.max_isometric_force()),
-            tick_rate: S::factor(1.0 / step.seconds()),
+            scales: S::from_f64(Kernels::ln(elements.tendon.scale() / elements.parallel.scale())),
+            part_rate: S::factor(1.0 / step.seconds()),
+            parts,
         })
     }
 
@@ -135,8 +143,14 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             let extension = (least + most).half();
             let length = tendon.fascicle_length(path_length, extension);
             // With the extension of the tendon its force rises and that of the parallel element
-            // falls.
-            if tendon.pull(extension).force > self.parallel.at(length).0 {
+            // falls. If both are slack, their logarithms resolve them best.
+            let pull = tendon.softened(extension);
+            let passive = self.parallel.softened(length);
+            let pulls_more = match (logarithm(pull), logarithm(passive)) {
+                (Some(pull), Some(passive)) => pull + self.scales > passive,
+                _ => tendon.force_of(pull.1) > self.parallel.force_of(passive.1),
+            };
+            if pulls_more {
                 most = extension;
             } else {
                 least = extension;
@@ -242,151 +256,6 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
             fascicle_velocity: state.fascicle_velocity,
             status: Status::empty(),
-        }
-    }
-
-    /// Advances the state by one tick. Never fails; the number of iterations is fixed; the output's
-    /// status flags what was clipped or clamped; the state stays finite for any input.
-    ///
-    /// Slow quantities (excitation, sag, yield, activation, factors that depend on length) are
-    /// evaluated at mid-tick and extrapolated linearly across the tick, with their change since the
-    /// last mid-tick. The mechanics are then integrated implicitly.
-    pub fn step(&self, state: &mut State<S, R, N>, input: Input<S>) -> Output<S> {
-        let (input, mut status) = self.domain.admit(input, state.path_length);
-        let tendon = &self.contraction.tendon;
-
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
-        let travel = self.contraction.lengthening(state.fascicle_velocity);
-        let middle = self.domain.mid_tick_length(length + travel.half());
-        let yieldings = self.yieldings(state);
-        let reciprocal = middle.valid.reciprocal();
-        let moment =
-            Moment { input, fascicle_length: middle.length, travel, reciprocal, yieldings };
-        let contractile = self.contractile(state, &moment, length, middle.valid);
-
-        let stretch = tendon.stretch(state.path_length, input.path_length);
-        let extension = Course { middle: state.tendon_extension + stretch.half(), change: stretch };
-        let end = self.contraction.advance::<R::Coefficients, N>(
-            state.fascicle_velocity,
-            extension,
-            &contractile,
-        );
-        status.set(Status::MECHANICS_UNSETTLED, !end.settled);
-        status.set(Status::FASCICLE_VELOCITY_LIMITED, end.velocity_limited);
-        state.speed = end.speed;
-        let Motion { travel, velocity } = end.motion;
-        state.path_length = input.path_length;
-        state.fascicle_velocity = velocity;
-        state.tendon_extension =
-            state.tendon_extension + stretch - self.contraction.lengthening(travel);
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
-        if !(middle.unclamped && self.domain.raises_no_flag(length, velocity)) {
-            status |= self.clamp_state(state, length, middle.length);
-        }
-
-        let tendon_pull = tendon.pull(state.tendon_extension);
-        status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
-        Output {
-            force: tendon_pull.force.force(&self.force),
-            relative_force: tendon_pull.force,
-            fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
-            fascicle_velocity: state.fascicle_velocity,
-            status,
-        }
-    }
-
-    /// Clamps `length` and velocity to the state range. Returns flags for what was clamped, and a
-    /// flag if the mid-tick length (`middle`), the length or the velocity is outside the validity
-    /// range of the filaments' equations.
-    fn clamp_state(&self, state: &mut State<S, R, N>, length: S, middle: S) -> Status {
-        let tendon = &self.contraction.tendon;
-        let (length, length_limited) = self.domain.fascicle_length.clip(length);
-        if length_limited {
-            state.tendon_extension = tendon.extension(state.path_length, length);
-            state.fascicle_velocity = S::ZERO;
-        }
-        let speeds = velocities::<S>();
-        let (velocity, _) = speeds.clip(state.fascicle_velocity);
-        state.fascicle_velocity = velocity;
-        let mut status = Status::empty();
-        status.set(Status::FASCICLE_LENGTH_LIMITED, length_limited);
-        let velocity_limited = velocity >= speeds.most || velocity <= speeds.least;
-        status.set(Status::FASCICLE_VELOCITY_LIMITED, velocity_limited);
-        // The coefficients depend on the mid-tick length, the output on the length at the end.
-        let outside = |length| !self.domain.filaments.contains(length);
-        let too_fast = velocity < self.domain.shortening_velocity;
-        status.set(Status::FASCICLE_OUTSIDE_DOMAIN, outside(middle) || outside(length) || too_fast);
-        status
-    }
-
-    /// Mid-tick Y of each type. Y is advanced to the start of this tick with the speed during the
-    /// last one, and extrapolated linearly by half a tick.
-    fn yieldings(&self, state: &mut State<S, R, N>) -> [S; N] {
-        let mut middles = [S::ONE; N];
-        let starts = state.yieldings.iter_mut().zip(&self.fibers);
-        for (middle, (yielding, fiber)) in middles.iter_mut().zip(starts) {
-            let before = S::of(*yielding);
-            *yielding = fiber.yielding.advance(*yielding, &state.speed);
-            let start = S::of(*yielding);
-            *middle = start + (start - before).half();
-        }
-        middles
-    }
-
-    /// Advances recruitment and returns the contractile element during the tick. `start` is the
-    /// fascicle length at the start of the tick, `valid` the mid-tick length clamped to the
-    /// validity range of the filaments' equations (L_ce0).
-    ///
-    /// Gains are evaluated at mid-tick. Their change across the tick is taken to be that since the
-    /// last mid-tick, so that no slopes with respect to length, frequency and recruitment are
-    /// needed.
-    fn contractile(
-        &self,
-        state: &mut State<S, R, N>,
-        moment: &Moment<S, N>,
-        start: S,
-        valid: S,
-    ) -> Contractile<'_, S, N> {
-        let Moment { fascicle_length: middle, travel, .. } = *moment;
-        let distance = Distance::new(valid);
-        let (parallel, parallel_slope) = self.parallel.at(middle);
-        let (compression, compression_slope) = self.compression.at(middle);
-        let recruited = self.recruitment.advance(&self.fibers, &mut state.recruitment, moment);
-        let force_lengths =
-            force_length::at(self.fibers.each_ref().map(|fiber| &fiber.force_length), &distance);
-        let active: [S; N] = from_fn(|i| recruited[i].activation * force_lengths[i]);
-        let last_gains = state.gains;
-        state.gains = from_fn(|i| recruited[i].weight * active[i]);
-        let gains = from_fn(|i| {
-            let gain = state.gains[i];
-            let jump = recruited[i].change_after_jump;
-            let change = jump.map_or(gain - last_gains[i], |weight| weight * active[i]);
-            // Extrapolation must not make a fast-falling gain negative at the end of the tick.
-            Course { middle: gain, change: change.max(-(gain + gain)) }
-        });
-        let compressed = recruited
-            .iter()
-            .fold(S::ZERO, |sum, of_type| sum + of_type.compression_weight * of_type.activation);
-        let jumps = recruited.iter().any(|of_type| of_type.change_after_jump.is_some());
-        let change = if jumps { S::ZERO } else { compressed - state.compressed };
-        state.compressed = compressed;
-        let compressed = Course { middle: compressed, change };
-        let passive_slope = parallel_slope + compressed.middle * compression_slope;
-        let passive_at_middle = parallel + compressed.middle * compression;
-        Contractile {
-            gains,
-            fibers: &self.fibers,
-            curves: force_velocity::curves(
-                self.fibers.each_ref().map(|fiber| &fiber.force_velocity),
-                valid,
-                travel,
-            ),
-            passive: Course {
-                middle: passive_at_middle
-                    + passive_slope * (start - middle).scaled(&self.tick_rate),
-                change: compressed.change * compression,
-            },
-            passive_slope,
         }
     }
 }

@@ -318,3 +318,31 @@ fn muscles_that_fixed_point_cannot_represent_are_refused_by_name() {
     });
     assert!(message.contains("parallel.toe: longest fascicles"), "{message}");
 }
+
+/// On a slack tendon two forces of some increments balance: the length is as exact as any.
+#[test]
+fn a_slack_muscle_rests_where_it_does_in_f64() {
+    for ratio in [0.1, 0.5, 2.0] {
+        let params = MuscleParams {
+            fascicle_length: 0.28,
+            tendon_length: 0.28 * ratio,
+            max_path_length: 0.28 * (1.45 + 1.03 * ratio),
+            mass: 0.9,
+            ..MUSCLE
+        };
+        let fixed = built::<Fixed, IntramuscularFes>(&params, TimeStep::MILLISECOND);
+        let exact = built::<f64, IntramuscularFes>(&params, TimeStep::MILLISECOND);
+        let (shortest, longest) = params.path_domain();
+        for share in [0.05, 0.2, 0.3, 0.4, 0.5] {
+            let path = shortest + share * (longest - shortest);
+            let found = fixed.observe(&fixed.rest_at_metres(path).expect("in range"));
+            let expected = exact.observe(&exact.rest_at_metres(path).expect("in range"));
+            let error = (found.fascicle_length.to_f64() - expected.fascicle_length).abs();
+            assert!(
+                error < 2e-6,
+                "{ratio} {share}: {error:e} L_ce0, {} F0",
+                expected.relative_force
+            );
+        }
+    }
+}

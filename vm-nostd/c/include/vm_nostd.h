@@ -125,7 +125,7 @@ typedef struct VmFesF64 VmFesF64;
 #define VM_CLASS_ECONOMY 1
 
 /**
- * Accuracy class: substeps of 0.1 ms or less.
+ * Accuracy class: substeps of 0.072 ms or less, and ticks longer than 0.5 ms in equal parts.
  */
 #define VM_CLASS_FINE 2
 

@@ -1,7 +1,7 @@
 //! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick
 //! filaments.
 
-use crate::equations::tendon::softplus_inverse;
+use crate::equations::tendon::{softened, softplus_inverse};
 use crate::error::{ParameterError, within};
 use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::summed::summed;
@@ -52,14 +52,19 @@ impl ParallelParams {
         within("parallel.viscosity", self.viscosity, LEAST_VISCOSITY, 1.0)
     }
 
+    /// Scale of F_pe1, c1 k1, F0.
+    pub(crate) fn scale(&self) -> f64 {
+        self.stiffness * self.toe
+    }
+
     /// F_pe1 in F0 at V = 0 for a fascicle length in L_max.
     pub(crate) fn force(&self, length: f64) -> f64 {
-        self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
+        self.scale() * ((length - self.slack_length) / self.toe).softplus().0
     }
 
     /// Fascicle length (L_max) at which F_pe1 is `force` (F0, above 0) at V = 0.
     pub(crate) fn length_at(&self, force: f64) -> f64 {
-        self.slack_length + self.toe * softplus_inverse(force / (self.stiffness * self.toe))
+        self.slack_length + self.toe * softplus_inverse(force / self.scale())
     }
 }
 
@@ -103,7 +108,7 @@ impl<S: Scalar> Parallel<S> {
         Self {
             slack_length: S::from_f64(params.slack_length * maximum_fascicle_length),
             per_toe: S::factor(1.0 / (maximum_fascicle_length * params.toe)),
-            force: S::factor(params.stiffness * params.toe),
+            force: S::factor(params.scale()),
             stiffness: S::factor(params.stiffness / maximum_fascicle_length * step.seconds()),
         }
     }
@@ -113,6 +118,17 @@ impl<S: Scalar> Parallel<S> {
     pub(crate) fn at(&self, fascicle_length: S) -> (S, S) {
         let (value, slope) = (fascicle_length - self.slack_length).scaled(&self.per_toe).softplus();
         (value.scaled(&self.force), S::ONE.by(slope).scaled(&self.stiffness))
+    }
+
+    /// Length (L_ce0) beyond slack in toes, and its softplus: the force at V = 0 in its scale
+    /// c1 k1.
+    pub(crate) fn softened(&self, fascicle_length: S) -> (S, S) {
+        softened((fascicle_length - self.slack_length).scaled(&self.per_toe))
+    }
+
+    /// Force (F0) of a softplus.
+    pub(crate) fn force_of(&self, softplus: S) -> S {
+        softplus.scaled(&self.force)
     }
 }
 

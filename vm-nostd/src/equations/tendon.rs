@@ -1,6 +1,7 @@
 //! Tendon and aponeurosis: F_se = cT kT ln(exp((L_se - LrT)/kT) + 1).
 
 use crate::error::{ParameterError, within};
+use crate::scalar::constant::Constant;
 use crate::scalar::float::one_minus_exp;
 use crate::scalar::{Kernels, Scalar};
 use crate::summed::summed;
@@ -28,14 +29,19 @@ impl TendonParams {
         within("tendon.slack_length", self.slack_length, 0.5, 1.5)
     }
 
+    /// Scale of F_se, cT kT, F0.
+    pub(crate) fn scale(&self) -> f64 {
+        self.stiffness * self.toe
+    }
+
     /// Tendon length (L_se0) at which F_se is `force` (F0, above 0).
     pub(crate) fn length_at(&self, force: f64) -> f64 {
-        self.toe * softplus_inverse(force / (self.stiffness * self.toe)) + self.slack_length
+        self.toe * softplus_inverse(force / self.scale()) + self.slack_length
     }
 
     /// F_se in F0 for a tendon length in L_se0.
     pub(crate) fn force(&self, length: f64) -> f64 {
-        self.stiffness * self.toe * ((length - self.slack_length) / self.toe).softplus().0
+        self.scale() * ((length - self.slack_length) / self.toe).softplus().0
     }
 }
 
@@ -88,7 +94,7 @@ summed! {
 impl<S: Scalar> TendonInverse<S> {
     pub(crate) fn new(params: &TendonParams, fascicle_length: f64, tendon_length: f64) -> Self {
         Self {
-            per_force: S::factor(1.0 / (params.stiffness * params.toe)),
+            per_force: S::factor(1.0 / params.scale()),
             toe: S::factor(params.toe * tendon_length / fascicle_length),
         }
     }
@@ -112,7 +118,7 @@ impl<S: Scalar> Tendon<S> {
             slack_path: S::path_length(params.slack_length * tendon_length),
             per_path: S::per_metre(1.0 / fascicle_length),
             per_toe: S::factor(ratio / params.toe),
-            force: S::factor(params.stiffness * params.toe),
+            force: S::factor(params.scale()),
             stiffness: S::factor(params.stiffness * ratio * step.seconds()),
         }
     }
@@ -146,4 +152,28 @@ impl<S: Scalar> Tendon<S> {
             saturated: toes.is_saturated() || force.is_saturated(),
         }
     }
+
+    /// Extension (L_ce0) in toes, and its softplus: the force in its scale cT kT.
+    pub(crate) fn softened(&self, extension: S) -> (S, S) {
+        softened(extension.scaled(&self.per_toe))
+    }
+
+    /// Force (F0) of a softplus.
+    pub(crate) fn force_of(&self, softplus: S) -> S {
+        softplus.scaled(&self.force)
+    }
+}
+
+/// A length in toes, and its softplus.
+pub(crate) fn softened<S: Scalar>(toes: S) -> (S, S) {
+    (toes, toes.softplus().0)
+}
+
+/// Below it, in toes, the logarithm of a softplus is taken: x less half the softplus, to 2e-5.
+const SLACK: Constant = Constant::new(-4.0);
+
+/// Logarithm of a softplus of `toes`, if it is nearly exponential. In fixed point it resolves
+/// forces that are only some increments.
+pub(crate) fn logarithm<S: Scalar>((toes, softplus): (S, S)) -> Option<S> {
+    (toes < S::constant(&SLACK)).then(|| toes - softplus.half())
 }

@@ -33,8 +33,6 @@ use crate::tick::course::Course;
 use crate::tick::range::Range;
 use crate::tick::time_step::TimeStep;
 
-/// Ticks at least this long have the coarse maximum substep, s: 1 ms less a rounding tolerance.
-const COARSE_TICK: f64 = 0.999e-3;
 /// Upper bound of w h in a substep. From half a period (pi) on, no inertia gives the right phase.
 const COARSEST_PHASE: f64 = 2.84;
 /// Upper bound of the number of substeps; reached only far from human anatomy.
@@ -172,8 +170,7 @@ fn substeps(class: Class, step: TimeStep, mass: f64, stiffness: f64) -> u8 {
     // Squares avoid roots: w² = stiffness/mass and A² = stiffness mass.
     let square = |x: f64| x * x;
     let (frequency, amplitude) = (stiffness / mass, stiffness * mass);
-    let Substeps { longest: (coarse, fine), ringing } = class.substeps();
-    let longest = if step.seconds() >= COARSE_TICK { coarse } else { fine };
+    let Substeps { longest, ringing } = class.substeps(step);
     (1..MOST_SUBSTEPS)
         .find(|&count| {
             let substep = step.seconds() / f64::from(count);
@@ -400,10 +397,36 @@ mod tests {
         };
         let counts = [0.1, 0.5, 1.0, 2.0]
             .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
-        assert_eq!(counts, [[1, 1, 1], [1, 4, 5], [1, 4, 10], [2, 8, 20]]);
+        assert_eq!(counts, [[1, 1, 2], [1, 4, 7], [1, 4, 14], [2, 8, 28]]);
         // On a tendon this short the muscle would ring by more than half a period in a tick.
         let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });
         let mass = moving_mass(&PAPER_MUSCLE);
         assert_eq!(substeps(Class::Economy, TimeStep::MILLISECOND, mass, short), 2);
+    }
+
+    /// Ringing at 1,000 rad/s. An amplitude of 1 F0 allows substeps of 0.35 and 0.15 ms; one of
+    /// 16 F0, with the square of its root, a quarter of that.
+    #[test]
+    fn the_more_a_muscle_rings_the_more_substeps_it_takes() {
+        let count = |class, amplitude: f64| {
+            substeps(class, TimeStep::MILLISECOND, 1e-3 * amplitude, 1e3 * amplitude)
+        };
+        let counts = |class| [0.01, 1.0, 16.0].map(|amplitude| count(class, amplitude));
+        assert_eq!(counts(Class::Economy), [1, 1, 1]);
+        assert_eq!(counts(Class::Standard), [4, 4, 12]);
+        assert_eq!(counts(Class::Fine), [14, 14, 27]);
+    }
+
+    #[test]
+    fn the_largest_coefficient_is_the_inertia_in_a_substep() {
+        for class in [Class::Economy, Class::Standard, Class::Fine] {
+            for milliseconds in [0.1, 1.0, 2.0] {
+                let step = TimeStep::from_seconds(milliseconds * 1e-3).unwrap();
+                let muscle = MuscleParams { class, ..PAPER_MUSCLE };
+                let built = Contraction::<f64>::new(&muscle, step).substep.inertia;
+                let found = largest_inertia(&muscle, step);
+                assert!((found / built - 1.0).abs() < 1e-12, "{class:?} {step:?}: {found}");
+            }
+        }
     }
 }

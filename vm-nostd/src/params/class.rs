@@ -1,10 +1,13 @@
-//! Accuracy classes: the number of substeps per tick.
+//! Accuracy classes: the number of parts of a tick, and of substeps of its mechanics.
+
+use crate::tick::time_step::TimeStep;
 
 /// Accuracy class of a muscle, a trade-off of accuracy and cycles.
 ///
 /// The tolerances are in `host-sim/data/tolerances.csv` and checked by `vm verify` and `vm sweep`.
-/// The class determines the truncation error of the mechanics, which occurs where path or
-/// stimulation frequency step and where a slack tendon snaps taut.
+/// The class determines the truncation error: that of the mechanics occurs where path or
+/// stimulation frequency step and where a slack tendon snaps taut, that of the filaments on fast
+/// paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
@@ -15,27 +18,64 @@ pub enum Class {
     /// Substeps of at most 0.25 ms.
     #[default]
     Standard,
-    /// Substeps of at most 0.1 ms. For regression tests.
+    /// Substeps of at most 0.072 ms, and all else once in 0.5 ms: a longer tick is taken in equal
+    /// parts. For comparisons.
     Fine,
 }
 
 /// Limits of the substeps of a class.
 pub(crate) struct Substeps {
-    /// Longest substep, s, in ticks of at least 1 ms and in shorter ones, which have a tighter
-    /// tolerance.
-    pub(crate) longest: (f64, f64),
+    /// Longest substep, s.
+    pub(crate) longest: f64,
     /// Greatest w h √A for a substep h, with angular frequency w and amplitude A (F0) of the
     /// ringing after a jump of path velocity by 1 L_ce0/s. The error of a second-order step is
     /// proportional to its square.
     pub(crate) ringing: f64,
 }
 
+/// Ticks at least this long have a looser tolerance, s: 1 ms less a rounding tolerance.
+const COARSE_TICK: f64 = 0.999e-3;
+/// Longest part of a tick in the fine class, s: 0.5 ms and a rounding tolerance. In fixed point,
+/// shorter ones add more by rounding than they save.
+const LONGEST_PART: f64 = 0.501e-3;
+/// Parts of the longest tick, 2 ms.
+pub(crate) const MOST_PARTS: u8 = 4;
+
 impl Class {
-    pub(crate) fn substeps(self) -> Substeps {
+    /// Number of equal parts in which a tick is taken.
+    pub(crate) fn parts(self, step: TimeStep) -> u8 {
         match self {
-            Self::Economy => Substeps { longest: (f64::MAX, f64::MAX), ringing: f64::MAX },
-            Self::Standard => Substeps { longest: (0.25e-3, 0.15e-3), ringing: 0.35 },
-            Self::Fine => Substeps { longest: (0.1e-3, 0.1e-3), ringing: 0.15 },
+            Self::Economy | Self::Standard => 1,
+            Self::Fine => (1..MOST_PARTS)
+                .find(|&parts| step.part(parts).seconds() <= LONGEST_PART)
+                .unwrap_or(MOST_PARTS),
         }
+    }
+
+    pub(crate) fn substeps(self, step: TimeStep) -> Substeps {
+        match self {
+            Self::Economy => Substeps { longest: f64::MAX, ringing: f64::MAX },
+            Self::Standard => {
+                let longest = if step.seconds() >= COARSE_TICK { 0.25e-3 } else { 0.15e-3 };
+                Substeps { longest, ringing: 0.35 }
+            }
+            Self::Fine => Substeps { longest: 0.072e-3, ringing: 0.15 },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fine_ticks_are_taken_in_parts_of_at_most_half_a_millisecond() {
+        let ticks = [0.1, 0.5, 0.51, 0.6, 1.0, 1.1, 1.5, 1.6, 2.0];
+        let parts = |class: Class| {
+            ticks.map(|tick| class.parts(TimeStep::from_seconds(tick * 1e-3).unwrap()))
+        };
+        assert_eq!(parts(Class::Fine), [1, 1, 2, 2, 2, 3, 3, 4, 4]);
+        assert_eq!(parts(Class::Standard), [1; 9]);
+        assert_eq!(parts(Class::Economy), [1; 9]);
     }
 }

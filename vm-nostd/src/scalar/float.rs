@@ -254,6 +254,9 @@ macro_rules! float {
             fn path_difference(path: Self, other: Self, per_metre: &Self) -> Self {
                 (path - other) * per_metre
             }
+            fn path_towards(path: Self, end: Self, parts: u8) -> Self {
+                path + (end - path) / Self::from(parts)
+            }
             fn path_factor(metres: f64) -> Self {
                 metres as Self
             }

@@ -23,6 +23,11 @@ impl TimeStep {
         }
     }
 
+    /// One of equal parts of the step.
+    pub(crate) fn part(self, parts: u8) -> Self {
+        Self(self.0 / f64::from(parts))
+    }
+
     /// The step in s.
     pub const fn seconds(self) -> f64 {
         self.0

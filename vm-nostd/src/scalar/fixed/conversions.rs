@@ -56,6 +56,9 @@ impl Conversions for Fixed {
     fn path_difference(path: I23F9, other: I23F9, per_metre: &Factor) -> Self {
         Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
     }
+    fn path_towards(path: I23F9, end: I23F9, parts: u8) -> I23F9 {
+        path.saturating_add(end.saturating_sub(path) / i32::from(parts))
+    }
     fn path_factor(metres: f64) -> Factor {
         Factor::new(metres * PATH_UNITS / UNITS)
     }
