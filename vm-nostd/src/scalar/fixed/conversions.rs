@@ -24,6 +24,9 @@ pub(super) fn value(number: Fixed) -> f64 {
     f64::from(number.to_bits()) / UNITS
 }
 
+/// 1/3 in 2^-32, rounded up.
+const THIRD: i64 = 0x5555_5556;
+
 /// The nearest path length to one in m, saturated.
 pub(super) fn nearest_path(metres: f64) -> I23F9 {
     I23F9::from_bits(nearest(metres * PATH_UNITS))
@@ -57,7 +60,14 @@ impl Conversions for Fixed {
         Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
     }
     fn path_towards(path: I23F9, end: I23F9, parts: u8) -> I23F9 {
-        path.saturating_add(end.saturating_sub(path) / i32::from(parts))
+        let way = end.saturating_sub(path).to_bits();
+        // Small cores have no division.
+        let part = match parts {
+            2 => way >> 1,
+            3 => ((i64::from(way) * THIRD) >> 32) as i32,
+            _ => way >> 2,
+        };
+        path.saturating_add(I23F9::from_bits(part))
     }
     fn path_factor(metres: f64) -> Factor {
         Factor::new(metres * PATH_UNITS / UNITS)
