@@ -144,8 +144,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             let length = tendon.fascicle_length(path_length, extension);
             // With the extension of the tendon its force rises and that of the parallel element
             // falls. If both are slack, their logarithms resolve them best.
-            let pull = tendon.softened(extension);
-            let passive = self.parallel.softened(length);
+            let pull = tendon.in_toes(extension);
+            let passive = self.parallel.in_toes(length);
             let pulls_more = match (logarithm(pull), logarithm(passive)) {
                 (Some(pull), Some(passive)) => pull + self.scales > passive,
                 _ => tendon.force_of(pull.1) > self.parallel.force_of(passive.1),

@@ -255,16 +255,18 @@ fn one_pulse_is_these_words_and_levels() {
     }
 }
 
+/// 10 mA.
+const STIMULUS: Stimulus = Stimulus {
+    amplitude_ua: 10_000,
+    width_us: 200,
+    gap_us: 40,
+    frequency_tenths_pps: 200,
+    recovery: 4,
+};
+
 #[test]
 fn what_does_not_answer_leaves_the_rest_neutral() {
-    let stimulus = Stimulus {
-        amplitude_ua: 10_000,
-        width_us: 200,
-        gap_us: 40,
-        frequency_tenths_pps: 200,
-        recovery: 4,
-    };
-    let pulse = Pulse::new(&stimulus, &SCALE).expect("a legal command");
+    let pulse = Pulse::new(&STIMULUS, &SCALE).expect("a legal command");
     let [settling, first, _, last, ..] =
         pulse.phases.map(|phase| Step { output: Some((0, phase)), duration_us: 1 });
 
@@ -300,14 +302,7 @@ fn what_does_not_answer_leaves_the_rest_neutral() {
 /// its current.
 #[test]
 fn a_phase_with_current_on_another_channel_switches_first() {
-    let stimulus = Stimulus {
-        amplitude_ua: 10_000,
-        width_us: 200,
-        gap_us: 40,
-        frequency_tenths_pps: 200,
-        recovery: 4,
-    };
-    let [_, phase, ..] = Pulse::new(&stimulus, &SCALE).expect("a legal command").phases;
+    let [_, phase, ..] = Pulse::new(&STIMULUS, &SCALE).expect("a legal command").phases;
     let (mut stage, shared) = stage();
     for channel in [0, 1] {
         stage.apply(&Step { output: Some((channel, phase)), duration_us: 1 }).expect("an output");

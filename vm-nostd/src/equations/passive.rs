@@ -1,7 +1,7 @@
 //! Passive elements: F_pe1, parallel to the fascicles, and F_pe2, compression of the thick
 //! filaments.
 
-use crate::equations::tendon::{softened, softplus_inverse};
+use crate::equations::tendon::{in_toes, softplus_inverse};
 use crate::error::{ParameterError, within};
 use crate::scalar::{Arithmetic, Kernels, Scalar};
 use crate::summed::summed;
@@ -122,8 +122,8 @@ impl<S: Scalar> Parallel<S> {
 
     /// Length (L_ce0) beyond slack in toes, and its softplus: the force at V = 0 in its scale
     /// c1 k1.
-    pub(crate) fn softened(&self, fascicle_length: S) -> (S, S) {
-        softened((fascicle_length - self.slack_length).scaled(&self.per_toe))
+    pub(crate) fn in_toes(&self, fascicle_length: S) -> (S, S) {
+        in_toes((fascicle_length - self.slack_length).scaled(&self.per_toe))
     }
 
     /// Force (F0) of a softplus.

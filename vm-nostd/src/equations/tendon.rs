@@ -154,8 +154,8 @@ impl<S: Scalar> Tendon<S> {
     }
 
     /// Extension (L_ce0) in toes, and its softplus: the force in its scale cT kT.
-    pub(crate) fn softened(&self, extension: S) -> (S, S) {
-        softened(extension.scaled(&self.per_toe))
+    pub(crate) fn in_toes(&self, extension: S) -> (S, S) {
+        in_toes(extension.scaled(&self.per_toe))
     }
 
     /// Force (F0) of a softplus.
@@ -165,7 +165,7 @@ impl<S: Scalar> Tendon<S> {
 }
 
 /// A length in toes, and its softplus.
-pub(crate) fn softened<S: Scalar>(toes: S) -> (S, S) {
+pub(crate) fn in_toes<S: Scalar>(toes: S) -> (S, S) {
     (toes, toes.softplus().0)
 }
 
