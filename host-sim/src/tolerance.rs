@@ -50,12 +50,6 @@ fn promises(class: Class) -> [f64; 3] {
     }
 }
 
-/// What rounding may add in fixed point at ticks of 0.1 ms where the muscle rings, whatever the
-/// class: largest and root-mean-square error, % of F0. Less than half an increment of length in a
-/// tick, 2^-25 L_ce0 or 3e-4 L_ce0/s, does not move the fascicles, while FV of an active muscle
-/// changes by about F0 per L_ce0/s; and a slack tendon snaps taut later or sooner.
-const ROUNDING: (f64, f64) = (0.25, 0.035);
-
 /// Promised largest and, where promised, root-mean-square error of a row, % of F0. It is
 /// independent of the row's tolerance.
 pub fn promise(key: &Key, class: Class, f0: f64) -> (f64, Option<f64>) {
@@ -72,9 +66,7 @@ pub fn promise(key: &Key, class: Class, f0: f64) -> (f64, Option<f64>) {
     let jumps = ["fes_variable_trains", "fes_doublets"];
     let [ringing, jumping, other] = promises(class);
     if rings(scenario) {
-        let rounded = arithmetic == "fixed" && scenario.ends_with("@0.1ms");
-        let (max, rms) = if rounded { ROUNDING } else { (0.0, 0.0) };
-        ((ringing * share).max(max), Some((0.1 * ringing * share).max(rms)))
+        (ringing * share, Some(0.1 * ringing * share))
     } else if jumps.iter().any(|name| scenario.starts_with(name)) {
         (jumping * share, None)
     } else {

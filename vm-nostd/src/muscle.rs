@@ -157,13 +157,13 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
             }
         }
         Some(State {
-            tendon_extension: (least + most).half(),
+            tendon_extension: (least + most).half().wide(),
             fascicle_velocity: S::ZERO,
             path_length,
             gains: [S::ZERO; N],
             compressed: S::ZERO,
             speed: Speed::NONE,
-            yieldings: [S::ONE.lag_state(); N],
+            yieldings: [S::ONE.wide(); N],
             recruitment: self.recruitment.at_rest(&self.fibers),
         })
     }
@@ -210,7 +210,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     ) -> Result<State<S, R, N>, RestoreError> {
         let length = State::<S, R, N>::SAVED_WORDS;
         let mut saved = Saved::new(words.into_iter(), length, self.fingerprint())?;
-        let tendon_extension = saved.number(S::is_finite)?;
+        let tendon_extension = saved.wide_if(S::is_finite)?;
         let speeds = velocities::<S>();
         let fascicle_velocity = saved.number(|value| speeds.contains(value))?;
         let path_length = saved.path::<S>(&self.domain.path_length)?;
@@ -218,7 +218,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let is_share = |value: S| share::<S>().contains_within(value, rounding);
         let compressed = saved.number(is_share)?;
         let speed = Speed::restored(&mut saved)?;
-        let length = self.contraction.tendon.fascicle_length(path_length, tendon_extension);
+        let tendon = &self.contraction.tendon;
+        let length = tendon.fascicle_length(path_length, S::of(tendon_extension));
         let (nearest, _) = self.domain.fascicle_length.clip(length);
         // A length clamped to a limit may be outside it by the rounding of the extension.
         if (length - nearest).abs() > S::from_f64(1e-4) {
@@ -228,9 +229,9 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         for gain in &mut gains {
             *gain = saved.number(is_share)?;
         }
-        let mut yieldings = [S::ONE.lag_state(); N];
+        let mut yieldings = [S::ONE.wide(); N];
         for (yielding, fiber) in yieldings.iter_mut().zip(&self.fibers) {
-            *yielding = saved.lag_state(&fiber.yielding.range())?;
+            *yielding = saved.wide(&fiber.yielding.range())?;
         }
         let recruitment = self.recruitment.restored(&self.fibers, &mut saved)?;
         saved.finished()?;
@@ -249,11 +250,12 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
     /// Output of a state without a tick: force, fascicle length and velocity, and no flags.
     pub fn observe(&self, state: &State<S, R, N>) -> Output<S> {
         let tendon = &self.contraction.tendon;
-        let relative_force = tendon.pull(state.tendon_extension).force;
+        let extension = S::of(state.tendon_extension);
+        let relative_force = tendon.pull(extension).force;
         Output {
             force: relative_force.force(&self.force),
             relative_force,
-            fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
+            fascicle_length: tendon.fascicle_length(state.path_length, extension),
             fascicle_velocity: state.fascicle_velocity,
             status: Status::empty(),
         }

@@ -126,16 +126,21 @@ impl<I: Iterator> Saved<I> {
         self.checked(value, 1, |value| range.contains(*value))
     }
 
-    pub(crate) fn lag_state<S: Scalar>(
-        &mut self,
-        range: &Range<S>,
-    ) -> Result<S::LagState, RestoreError>
+    pub(crate) fn wide<S: Scalar>(&mut self, range: &Range<S>) -> Result<S::Wide, RestoreError>
     where
         I: Iterator<Item = S::Bits>,
     {
-        let value = S::lag_state_from_words(&mut self.words);
-        self.checked(value, S::LAG_STATE_WORDS, |value| {
-            range.contains_within(S::of(*value), S::from_f64(ROUNDING))
-        })
+        self.wide_if(|value: S| range.contains_within(value, S::from_f64(ROUNDING)))
+    }
+
+    pub(crate) fn wide_if<S: Scalar>(
+        &mut self,
+        is_valid: impl FnOnce(S) -> bool,
+    ) -> Result<S::Wide, RestoreError>
+    where
+        I: Iterator<Item = S::Bits>,
+    {
+        let value = S::wide_from_words(&mut self.words);
+        self.checked(value, S::WIDE_WORDS, |value| is_valid(S::of(*value)))
     }
 }

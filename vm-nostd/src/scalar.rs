@@ -75,10 +75,10 @@ pub trait Scalar:
     /// The value of a word from [`to_bits`](Scalar::to_bits).
     fn from_bits(bits: Self::Bits) -> Self;
 
-    /// State of a lag with the value `self`.
-    fn lag_state(self) -> Self::LagState;
-    /// Value of the state of a lag.
-    fn of(state: Self::LagState) -> Self;
+    /// `self` with the resolution of a state.
+    fn wide(self) -> Self::Wide;
+    /// The nearest number to a state.
+    fn of(state: Self::Wide) -> Self;
 
     /// Nearest path length to one in m. Not used in a tick.
     fn path_length(metres: f64) -> Self::PathLength;

@@ -14,7 +14,7 @@ use crate::summed::Summed;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     /// Tendon extension beyond slack, (L_se - LrT) L_se0/L_ce0, in L_ce0.
-    pub(crate) tendon_extension: S,
+    pub(crate) tendon_extension: S::Wide,
     /// V, L_ce0/s.
     pub(crate) fascicle_velocity: S,
     /// L_mt at the last tick boundary.
@@ -26,13 +26,13 @@ pub struct State<S: Scalar, R: Recruitment<S, N>, const N: usize> {
     /// Speed during the last tick, with which Y is advanced in the next one.
     pub(crate) speed: Speed<S>,
     /// Y of each type at the start of the last tick, 0..1.
-    pub(crate) yieldings: [S::LagState; N],
+    pub(crate) yieldings: [S::Wide; N],
     pub(crate) recruitment: R::State,
 }
 
 impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 6 + N * (1 + S::LAG_STATE_WORDS) + R::State::WORDS;
+    pub const WORDS: usize = 5 + N + (1 + N) * S::WIDE_WORDS + R::State::WORDS;
     /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
@@ -56,17 +56,16 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> State<S, R, N> {
     /// mode that has one.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
         let mechanics = [
-            self.tendon_extension.to_bits(),
             self.fascicle_velocity.to_bits(),
             S::path_bits(self.path_length),
             self.compressed.to_bits(),
             self.speed.mean.to_bits(),
             self.speed.variance.to_bits(),
         ];
-        mechanics
-            .into_iter()
+        S::wide_words(self.tendon_extension)
+            .chain(mechanics)
             .chain(self.gains.into_iter().map(S::to_bits))
-            .chain(self.yieldings.into_iter().flat_map(S::lag_state_words))
+            .chain(self.yieldings.into_iter().flat_map(S::wide_words))
             .chain(self.recruitment.words())
     }
 }

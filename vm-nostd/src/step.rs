@@ -46,7 +46,8 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let (input, mut status) = self.domain.admit(input, state.path_length);
         let tendon = &self.contraction.tendon;
 
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let extension = S::of(state.tendon_extension);
+        let length = tendon.fascicle_length(state.path_length, extension);
         let travel = self.contraction.lengthening(state.fascicle_velocity);
         let middle = self.domain.mid_tick_length(length + travel.half());
         let yieldings = self.yieldings(state);
@@ -56,7 +57,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let contractile = self.contractile(state, &moment, length, middle.valid);
 
         let stretch = tendon.stretch(state.path_length, input.path_length);
-        let extension = Course { middle: state.tendon_extension + stretch.half(), change: stretch };
+        let extension = Course { middle: extension + stretch.half(), change: stretch };
         let end = self.contraction.advance::<R::Coefficients, N>(
             state.fascicle_velocity,
             extension,
@@ -69,18 +70,20 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         state.path_length = input.path_length;
         state.fascicle_velocity = velocity;
         state.tendon_extension =
-            state.tendon_extension + stretch - self.contraction.lengthening(travel);
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+            self.contraction.stretched(state.tendon_extension, stretch, travel);
+        let extension = S::of(state.tendon_extension);
+        let length = tendon.fascicle_length(state.path_length, extension);
         if !(middle.unclamped && self.domain.raises_no_flag(length, velocity)) {
             status |= self.clamp_state(state, length, middle.length);
         }
 
-        let tendon_pull = tendon.pull(state.tendon_extension);
+        let extension = S::of(state.tendon_extension);
+        let tendon_pull = tendon.pull(extension);
         status.set(Status::TENDON_FORCE_LIMITED, tendon_pull.saturated);
         Output {
             force: tendon_pull.force.force(&self.force),
             relative_force: tendon_pull.force,
-            fascicle_length: tendon.fascicle_length(state.path_length, state.tendon_extension),
+            fascicle_length: tendon.fascicle_length(state.path_length, extension),
             fascicle_velocity: state.fascicle_velocity,
             status,
         }
@@ -93,7 +96,7 @@ impl<S: Scalar, R: Recruitment<S, N>, const N: usize> Muscle<S, R, N> {
         let tendon = &self.contraction.tendon;
         let (length, length_limited) = self.domain.fascicle_length.clip(length);
         if length_limited {
-            state.tendon_extension = tendon.extension(state.path_length, length);
+            state.tendon_extension = tendon.extension(state.path_length, length).wide();
             state.fascicle_velocity = S::ZERO;
         }
         let speeds = velocities::<S>();

@@ -100,7 +100,7 @@ fn moves<S: Scalar>(time: f64, seconds: f64) -> Result<bool, &'static str> {
     let step = TimeStep::from_seconds(seconds).expect("in range");
     let params = GainParams { time, ..ESTIMATE };
     let estimate = GainEstimate::<S>::build(&params, 1024.0, step).map_err(|error| error.field)?;
-    let mut gain = S::from_f64(1.9).lag_state();
+    let mut gain = S::from_f64(1.9).wide();
     for _ in 0..1000 {
         estimate.step(&mut gain, S::from_f64(0.1), S::from_f64(-0.0051), false);
     }

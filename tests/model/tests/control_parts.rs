@@ -118,7 +118,7 @@ fn learns<S: Scalar>(rounding: f64) {
     let params = GainParams { time: 2.0, least: 0.3, most: 2.0, excitation: 1.0 };
     let estimate = GainEstimate::<S>::build(&params, 1024.0, STEP).expect("an estimate");
     let number = |torque: f64| S::from_f64(torque / 1024.0);
-    let (mut gain, mut exact) = (S::ONE.lag_state(), 1.0_f64);
+    let (mut gain, mut exact) = (S::ONE.wide(), 1.0_f64);
     let (wanted, real) = (20.0, 0.6);
     for _ in 0..20_000 {
         // A feedback that makes the torque right: real (wanted/gain + p) = wanted.

@@ -272,7 +272,7 @@ fn saved<S: Scalar>() {
     let refused = other.restore(words.iter().copied()).expect_err("another one's");
     assert!(matches!(refused, RestoreError::OtherMuscle { .. }), "{refused}");
     // The place in the delay line, counted from the state's start.
-    let place = 2 * (size_of::<S::LagState>() / size_of::<S::Bits>()) + 40 + 1;
+    let place = 2 * (size_of::<S::Wide>() / size_of::<S::Bits>()) + 40 + 1;
     let mut beyond = words;
     beyond[place] = S::Bits::from(41);
     assert_eq!(prosthesis.restore(beyond), Err(RestoreError::Value { word: place }));

@@ -585,7 +585,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Words of the saved state of a muscle of two types in VM_MODE_CONTINUOUS or VM_MODE_FES.
  */
-#define VM_FIXED_STATE_WORDS 31
+#define VM_FIXED_STATE_WORDS 32
 
 /**
  * Bytes of memory of an inverse without fibre types, and of each type.
@@ -650,7 +650,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Words of the saved state of a prosthesis of two types.
  */
-#define VM_PROSTHESIS_FIXED_WORDS 276
+#define VM_PROSTHESIS_FIXED_WORDS 278
 
 /**
  * Bytes of memory of an FES controller without fibre types, and of each type.

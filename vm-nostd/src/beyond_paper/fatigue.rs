@@ -66,18 +66,18 @@ pub struct FatigueState<S: Scalar> {
     steps: S,
     /// The remainder. A separate number, because near 1 the change of a tick may be below the ULP
     /// of `f32`.
-    rest: S::LagState,
+    rest: S::Wide,
 }
 
 impl<S: Scalar> FatigueState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 1 + S::LAG_STATE_WORDS;
+    pub const WORDS: usize = 1 + S::WIDE_WORDS;
     /// Number of saved words: fingerprint and state.
     pub const SAVED_WORDS: usize = 1 + Self::WORDS;
 
     /// The bits, for comparison. [`Fatigue::save`] adds the fingerprint for storage.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        core::iter::once(self.steps.to_bits()).chain(S::lag_state_words(self.rest))
+        core::iter::once(self.steps.to_bits()).chain(S::wide_words(self.rest))
     }
 
     /// Fitness fit, 0..1.
@@ -147,7 +147,7 @@ impl<S: Scalar> Fatigue<S> {
 
     /// State of a rested muscle.
     pub fn rested(&self) -> FatigueState<S> {
-        FatigueState { steps: S::ONE, rest: S::ZERO.lag_state() }
+        FatigueState { steps: S::ONE, rest: S::ZERO.wide() }
     }
 
     /// Fingerprint of coefficients, time step and arithmetic.
@@ -175,7 +175,7 @@ impl<S: Scalar> Fatigue<S> {
         let share = |value| self.activation.contains(value);
         let steps = saved.number(share)?;
         // A tick may change fitness by more than a step, so the remainder may exceed it.
-        let rest = saved.lag_state(&Range { least: -S::ONE, most: S::ONE })?;
+        let rest = saved.wide(&Range { least: -S::ONE, most: S::ONE })?;
         saved.finished()?;
         Ok(FatigueState { steps, rest })
     }

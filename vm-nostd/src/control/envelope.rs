@@ -101,7 +101,7 @@ summed! {
 /// State of an envelope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvelopeState<S: Scalar, const D: usize> {
-    lags: [S::LagState; 2],
+    lags: [S::Wide; 2],
     /// The last normalised values; `next` is the oldest.
     line: [S; D],
     next: usize,
@@ -109,11 +109,11 @@ pub struct EnvelopeState<S: Scalar, const D: usize> {
 
 impl<S: Scalar, const D: usize> EnvelopeState<S, D> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS + D + 1;
+    pub const WORDS: usize = 2 * S::WIDE_WORDS + D + 1;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        let lags = self.lags.into_iter().flat_map(S::lag_state_words);
+        let lags = self.lags.into_iter().flat_map(S::wide_words);
         let next = S::Bits::from(self.next as u32);
         lags.chain(self.line.into_iter().map(S::to_bits)).chain(core::iter::once(next))
     }
@@ -147,7 +147,7 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
 
     /// State after a long rest.
     pub fn rested(&self) -> EnvelopeState<S, D> {
-        EnvelopeState { lags: [self.rest.lag_state(); 2], line: [S::ZERO; D], next: 0 }
+        EnvelopeState { lags: [self.rest.wide(); 2], line: [S::ZERO; D], next: 0 }
     }
 
     /// Takes a sample (mV) and returns the activation, 0..1, and whether the sample was not finite
@@ -187,7 +187,7 @@ impl<S: Scalar, const D: usize> Envelope<S, D> {
         let mut state = self.rested();
         let range = Range { least: S::ZERO, most: self.greatest };
         for lag in &mut state.lags {
-            *lag = saved.lag_state(&range)?;
+            *lag = saved.wide(&range)?;
         }
         for value in &mut state.line {
             *value = saved.number(|value| share::<S>().contains(value))?;

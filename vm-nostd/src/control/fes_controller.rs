@@ -141,9 +141,9 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             target: angle,
             angle,
             measured: S::ZERO,
-            expected: expected.lag_state(),
+            expected: expected.wide(),
             feedback: self.feedback.rested(),
-            gain: S::ONE.lag_state(),
+            gain: S::ONE.wide(),
             saturated: Saturated::default(),
             inverses: self.inverses.each_ref().map(|inverse| InverseState {
                 lead: inverse.lead.rested(),

@@ -30,7 +30,7 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
         core::iter::once(S::Bits::from(fingerprint::<S, _>(CONTROLLER, self)))
             .chain(own)
             .chain(core::iter::once(S::Bits::from(saturated)))
-            .chain(slow.into_iter().flat_map(S::lag_state_words))
+            .chain(slow.into_iter().flat_map(S::wide_words))
             .chain(state.feedback.words())
             .chain(state.inverses.iter().flat_map(|inverse| inverse.lead.words()))
             .chain(tired.flatten())
@@ -55,11 +55,11 @@ impl<S: Scalar, const N: usize> FesController<S, N> {
             state.saturated = Saturated { above: saturated & 1 != 0, below: saturated & 2 != 0 };
             let any = S::from_f64(1e4);
             let range = if self.of_torque { Range { least: -any, most: any } } else { self.range };
-            state.expected = saved.lag_state(&range)?;
+            state.expected = saved.wide(&range)?;
             let gains = Range { least: S::ONE, most: S::ONE };
             state.gain = match &self.gain {
                 Some(gain) => gain.restored(&mut saved)?,
-                None => saved.lag_state(&gains)?,
+                None => saved.wide(&gains)?,
             };
             state.feedback = self.feedback.restored(&mut saved)?;
             for (inverse, state) in self.inverses.iter().zip(&mut state.inverses) {

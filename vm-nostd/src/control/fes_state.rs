@@ -15,16 +15,16 @@ pub struct FesControllerState<S: Scalar> {
     pub(super) angle: S,
     pub(super) measured: S,
     /// What the feedback expects to be measured.
-    pub(super) expected: S::LagState,
+    pub(super) expected: S::Wide,
     pub(super) feedback: PiState<S>,
-    pub(super) gain: S::LagState,
+    pub(super) gain: S::Wide,
     pub(super) saturated: Saturated,
     pub(super) inverses: [InverseState<S>; 2],
 }
 
 impl<S: Scalar> FesControllerState<S> {
     pub(super) const OWN: usize =
-        1 + 4 + 2 * S::LAG_STATE_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
+        1 + 4 + 2 * S::WIDE_WORDS + PiState::<S>::WORDS + 2 * LeadState::<S>::WORDS;
     /// Words of a saved state without fatigue;
     /// [`FesController::saved_words`](super::FesController::saved_words) has those of a controller.
     pub const LEAST_SAVED_WORDS: usize = Self::OWN;
@@ -41,7 +41,7 @@ impl<S: Scalar> FesControllerState<S> {
         let own = [*target, *angle, *measured].map(S::to_bits);
         own.into_iter()
             .chain(core::iter::once(S::Bits::from(saturated.bits())))
-            .chain([*expected, *gain].into_iter().flat_map(S::lag_state_words))
+            .chain([*expected, *gain].into_iter().flat_map(S::wide_words))
             .chain(feedback.words())
             .chain(inverses.iter().flat_map(InverseState::words))
     }

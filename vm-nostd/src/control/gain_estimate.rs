@@ -64,7 +64,7 @@ const RESOLVED: f64 = 0.05;
 
 /// Longest time constant (s) with which a tick's change is not lost to rounding.
 fn longest_time<S: Scalar>(most: f64, step: TimeStep) -> f64 {
-    let gain = S::from_f64(most).lag_state();
+    let gain = S::from_f64(most).wide();
     let moves = |time: f64| {
         S::advanced(gain, S::from_f64(RESOLVED), S::share(step.seconds() / time)) != gain
     };
@@ -94,7 +94,7 @@ impl<S: Scalar> GainEstimate<S> {
     }
 
     /// Moves the estimate by what the feedback adds to the torque that the inverse was asked for.
-    pub fn step(&self, gain: &mut S::LagState, asked: S, feedback: S, saturated: bool) -> Learnt {
+    pub fn step(&self, gain: &mut S::Wide, asked: S, feedback: S, saturated: bool) -> Learnt {
         if saturated || asked.abs() < self.excitation {
             return Learnt::Frozen;
         }
@@ -116,7 +116,7 @@ impl<S: Scalar> GainEstimate<S> {
     pub(super) fn restored<I: Iterator<Item = S::Bits>>(
         &self,
         saved: &mut Saved<I>,
-    ) -> Result<S::LagState, RestoreError> {
-        saved.lag_state(&self.range)
+    ) -> Result<S::Wide, RestoreError> {
+        saved.wide(&self.range)
     }
 }

@@ -67,18 +67,18 @@ summed! {
 
 /// State of a lead: the filtered input of both stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeadState<S: Scalar>([S::LagState; 2]);
+pub struct LeadState<S: Scalar>([S::Wide; 2]);
 
 /// Range of what the stages hold.
 const MOST: f64 = 12.0;
 
 impl<S: Scalar> LeadState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS;
+    pub const WORDS: usize = 2 * S::WIDE_WORDS;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        self.0.into_iter().flat_map(S::lag_state_words)
+        self.0.into_iter().flat_map(S::wide_words)
     }
 }
 
@@ -96,7 +96,7 @@ impl<S: Scalar> Lead<S> {
 
     /// State of an input that was 0 for long.
     pub fn rested(&self) -> LeadState<S> {
-        LeadState([S::ZERO.lag_state(); 2])
+        LeadState([S::ZERO.wide(); 2])
     }
 
     /// Takes the wanted activation, 0..1; returns the stimulation that makes the muscle follow it,
@@ -109,7 +109,7 @@ impl<S: Scalar> Lead<S> {
 
     /// x + (T/T_f - 1)(x - l) with the filtered input l: (1 + T s)/(1 + T_f s). What is held for a
     /// tick is taken at its middle.
-    fn stage(&self, filtered: &mut S::LagState, input: S) -> S {
+    fn stage(&self, filtered: &mut S::Wide, input: S) -> S {
         let ahead = input - self.filter.at_middle(*filtered, input);
         *filtered = self.filter.at_end(*filtered, input);
         let ratio = if ahead >= S::ZERO { self.rise } else { self.fall };
@@ -121,6 +121,6 @@ impl<S: Scalar> Lead<S> {
         saved: &mut Saved<I>,
     ) -> Result<LeadState<S>, RestoreError> {
         let range = Range { least: -self.most, most: self.most };
-        Ok(LeadState([saved.lag_state(&range)?, saved.lag_state(&range)?]))
+        Ok(LeadState([saved.wide(&range)?, saved.wide(&range)?]))
     }
 }

@@ -77,18 +77,18 @@ summed! {
 /// State of the feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PiState<S: Scalar> {
-    integral: S::LagState,
+    integral: S::Wide,
     /// The filtered error.
-    filtered: S::LagState,
+    filtered: S::Wide,
 }
 
 impl<S: Scalar> PiState<S> {
     /// Number of [`words`](Self::words).
-    pub const WORDS: usize = 2 * S::LAG_STATE_WORDS;
+    pub const WORDS: usize = 2 * S::WIDE_WORDS;
 
     /// The bits.
     pub fn words(&self) -> impl Iterator<Item = S::Bits> {
-        [self.integral, self.filtered].into_iter().flat_map(S::lag_state_words)
+        [self.integral, self.filtered].into_iter().flat_map(S::wide_words)
     }
 
     /// The integral, in units of the output.
@@ -137,7 +137,7 @@ impl<S: Scalar> Pi<S> {
 
     /// No error for long.
     pub fn rested(&self) -> PiState<S> {
-        PiState { integral: S::ZERO.lag_state(), filtered: S::ZERO.lag_state() }
+        PiState { integral: S::ZERO.wide(), filtered: S::ZERO.wide() }
     }
 
     /// The feedback of an error, clipped to ±100 units; one that is not finite counts as 0.
@@ -150,7 +150,7 @@ impl<S: Scalar> Pi<S> {
             let moved = S::advanced(state.integral, self.integral * error, self.share);
             let value = S::of(moved);
             let kept = value.max(-self.most).min(self.most);
-            state.integral = if kept == value { moved } else { kept.lag_state() };
+            state.integral = if kept == value { moved } else { kept.wide() };
         }
         let ahead = error - S::of(state.filtered);
         state.filtered = self.filter.at_end(state.filtered, error);
@@ -161,8 +161,8 @@ impl<S: Scalar> Pi<S> {
         &self,
         saved: &mut Saved<I>,
     ) -> Result<PiState<S>, RestoreError> {
-        let integral = saved.lag_state(&Range { least: -self.most, most: self.most })?;
+        let integral = saved.wide(&Range { least: -self.most, most: self.most })?;
         let any = S::from_f64(GREATEST_ERROR);
-        Ok(PiState { integral, filtered: saved.lag_state(&Range { least: -any, most: any })? })
+        Ok(PiState { integral, filtered: saved.wide(&Range { least: -any, most: any })? })
     }
 }

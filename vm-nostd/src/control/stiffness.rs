@@ -58,7 +58,8 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
     /// [`step`](Self::step).
     pub fn stiffness(&self, state: &State<S, R, N>) -> S {
         let tendon = &self.contraction.tendon;
-        let length = tendon.fascicle_length(state.path_length, state.tendon_extension);
+        let extension = S::of(state.tendon_extension);
+        let length = tendon.fascicle_length(state.path_length, extension);
         let (length, _) = self.domain.filaments.clip(length);
         let step = half_to_the(STEP);
         let longer = self.pull_at(state, length, length + step);
@@ -66,7 +67,7 @@ impl<S: Scalar, R: Lumped<S, N>, const N: usize> Muscle<S, R, N> {
         // Over 2^(1 - STEP).
         let fascicles = (1..STEP).fold(longer - shorter, |slope, _| slope + slope);
         // Both per L_ce0/s and tick: F0/L_ce0 of a taut tendon would saturate in fixed point.
-        let stretched = tendon.pull(state.tendon_extension).stiffness;
+        let stretched = tendon.pull(extension).stiffness;
         let of_fascicles = self.contraction.lengthening(fascicles);
         // Where the fascicles fall steeper than the tendon rises, there is no equilibrium.
         let both = (stretched + of_fascicles).max(stretched.half().half()).max(S::LEAST);

@@ -102,7 +102,7 @@ impl<S: Scalar> ActivationCurve<S> {
     /// Af for an effective frequency Y S f (f0.5, at least 0).
     #[inline(always)]
     pub(crate) fn at(&self, frequency: S) -> S {
-        let activation = (self.exponent * (frequency * self.per_scale).ln()).weibull();
+        let activation = (self.exponent * frequency.ln_of_product(self.per_scale)).weibull();
         if frequency > S::ZERO { activation } else { S::ZERO }
     }
 

@@ -55,11 +55,11 @@ summed! {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Excited<S: Scalar> {
     /// f_int at the tick's end.
-    pub(crate) intermediate: S::LagState,
+    pub(crate) intermediate: S::Wide,
     /// f_eff at mid-tick.
     pub(crate) effective_at_middle: S,
     /// f_eff at the tick's end.
-    pub(crate) effective: S::LagState,
+    pub(crate) effective: S::Wide,
 }
 
 /// Range of fascicle length (L_ce0) and frequency (f0.5) for which the unit of time constants is
@@ -94,9 +94,9 @@ impl<S: Scalar> Excitation<S> {
 pub(crate) struct ExcitationInput<'a, S: Scalar> {
     pub(crate) excitation: &'a Excitation<S>,
     /// f_int at the start of the tick.
-    pub(crate) intermediate: S::LagState,
+    pub(crate) intermediate: S::Wide,
     /// f_eff at the start of the tick.
-    pub(crate) effective: S::LagState,
+    pub(crate) effective: S::Wide,
     /// Target of f_int, f0.5.
     pub(crate) drive: S,
     /// f_env at mid-tick, f0.5.
@@ -156,7 +156,7 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
         let changes = ((excess[i], delayed), (-lag[i], response));
         S::of(S::advanced_by_two(types[i].effective, changes.0, changes.1))
     });
-    let end: [S::LagState; N] = from_fn(|i| {
+    let end: [S::Wide; N] = from_fn(|i| {
         let Lags { response, delayed } = lags[i][1];
         let changes = ((excess[i], delayed), (-lag[i], response));
         S::advanced_by_two(types[i].effective, changes.0, changes.1)
@@ -165,6 +165,6 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
         intermediate: S::advanced(types[i].intermediate, -excess[i], lags[i][1].response),
         effective_at_middle: middle[i],
         // Rounding must not make the state negative.
-        effective: if S::of(end[i]).is_negative() { S::ZERO.lag_state() } else { end[i] },
+        effective: if S::of(end[i]).is_negative() { S::ZERO.wide() } else { end[i] },
     })
 }

@@ -69,7 +69,7 @@ impl<S: Scalar> Sag<S> {
     }
 
     /// S at the end of the tick if the type fired for a `share` (0..1) of the tick.
-    pub(crate) fn advance(&self, sag: S::LagState, share: S) -> S::LagState {
+    pub(crate) fn advance(&self, sag: S::Wide, share: S) -> S::Wide {
         let target = self.resting_level + (self.firing_level - self.resting_level) * share;
         self.lag.at_end(sag, target)
     }

@@ -126,7 +126,7 @@ impl<S: Scalar> Tendon<S> {
     /// Change of extension (L_ce0) at constant fascicle length if the path changes from `before` to
     /// `after`.
     pub(crate) fn stretch(&self, before: S::PathLength, after: S::PathLength) -> S {
-        S::path_difference(after, before, &self.per_path)
+        S::path_change(before, after, self.slack_path, &self.per_path)
     }
 
     /// Extension (L_ce0) at a path length and a fascicle length (L_ce0).

@@ -96,7 +96,7 @@ impl<S: Scalar> Yielding<S> {
     /// exp(-mean/VY) (1 + variance/(2 VY²)). The tick-boundary velocity would give a biased mean:
     /// with inputs that step every tick, it ripples at the tick rate.
     #[inline(always)]
-    pub(crate) fn advance(&self, yielding: S::LagState, speed: &Speed<S>) -> S::LagState {
+    pub(crate) fn advance(&self, yielding: S::Wide, speed: &Speed<S>) -> S::Wide {
         if self.depth == S::ZERO {
             return yielding;
         }

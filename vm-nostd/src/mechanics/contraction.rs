@@ -203,6 +203,13 @@ impl<S: Scalar> Contraction<S> {
         travel.rounded_portion(self.tick)
     }
 
+    /// Extension (L_ce0) after a tick in which the path stretched it by `stretch` and the fascicles
+    /// lengthened with the velocity `travel`.
+    #[inline(always)]
+    pub(crate) fn stretched(&self, extension: S::Wide, stretch: S, travel: S) -> S::Wide {
+        S::stretched(extension, stretch, travel, self.tick)
+    }
+
     /// Integrates one tick, starting with `velocity`. `extension` is that of the tendon at constant
     /// fascicle length (L_ce0 beyond slack), linear during the tick.
     ///
@@ -293,7 +300,7 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
         let constant = -(momentum + pull.force);
 
         let mut gains = element.gains.map(|gain| gain.at(time));
-        let passive = element.passive.at(time) + element.passive_slope * motion.travel;
+        let passive = element.passive.at(time) + motion.travel.times(element.passive_slope);
         let mut elastic = self.elastic;
 
         // The FV branch is chosen by the sign of the net force at V = 0, which is that of the
@@ -322,19 +329,19 @@ impl<S: Scalar, const N: usize> Tick<'_, S, N> {
 
         // F_ce' at the predicted velocity, its slopes, and its change in a tick.
         let mut viscosity = c.viscosity;
-        let mut force = passive + (viscosity + elastic) * velocity;
+        let mut force = passive + velocity.times(viscosity + elastic);
         let mut rise = element.passive.change;
         if R::PASSIVE_ONLY_PULLS && force.is_negative() {
             (force, viscosity, elastic, rise) = (S::ZERO, S::ZERO, S::ZERO, S::ZERO);
         }
-        // gain FV = gain + secant V of each type, and its change in a tick.
+        // gain FV = gain + secant V of each type, and the change of their sum in a tick.
         let secants = zip(&gains, &curves, |gain, fv| *gain * fv.secant);
+        let mut force = force + filaments + velocity.times(sum(&secants));
         let slopes = zip(&secants, &curves, |secant, fv| *secant * fv.reciprocal);
-        let changes = element.gains.map(|gain| gain.change);
-        let changing = sum(&zip(&changes, &curves, |change, fv| *change * fv.secant));
-        let mut force = force + filaments + sum(&secants) * velocity;
         let mut steepness = sum(&slopes);
         let mut half_curvature = -sum(&zip(&slopes, &curves, |slope, fv| *slope * fv.bend));
+        let changes = element.gains.map(|gain| gain.change);
+        let changing = sum(&zip(&changes, &curves, |change, fv| *change * fv.secant));
         rise = rise + sum(&changes) + changing * velocity;
         if force.is_negative() {
             cold_path();

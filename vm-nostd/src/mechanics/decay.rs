@@ -34,7 +34,7 @@ pub(super) fn offsets<S: Scalar>(
     let difference = velocity_change.by(s) - force_change * balance.reciprocal;
     let share = S::ONE.by(s);
     let squared = share.by(s);
-    let back = (squared + squared - squared.by(s)) * difference;
+    let back = difference.times(squared + squared - squared.by(s));
     Offsets { end: velocity_change - back, mean: (share - squared).half() * back }
 }
 

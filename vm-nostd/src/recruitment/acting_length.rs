@@ -88,9 +88,9 @@ summed! {
 }
 
 impl<S: Scalar> ActingLength<S> for EffectiveLength {
-    type State = S::LagState;
+    type State = S::Wide;
     type Coefficients = EffectiveLengthCoefficients<S>;
-    const WORDS: usize = S::LAG_STATE_WORDS;
+    const WORDS: usize = S::WIDE_WORDS;
     const MODE: u32 = 4;
 
     fn new(fiber_type: &FiberType, domain: (f64, f64), step: TimeStep) -> Self::Coefficients {
@@ -100,19 +100,19 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
         }
     }
 
-    fn at_rest() -> S::LagState {
-        S::ONE.lag_state()
+    fn at_rest() -> S::Wide {
+        S::ONE.wide()
     }
 
-    fn words(state: S::LagState) -> impl Iterator<Item = S::Bits> {
-        S::lag_state_words(state)
+    fn words(state: S::Wide) -> impl Iterator<Item = S::Bits> {
+        S::wide_words(state)
     }
 
     fn restored<I: Iterator<Item = S::Bits>>(
         coefficients: &Self::Coefficients,
         saved: &mut Saved<I>,
-    ) -> Result<S::LagState, RestoreError> {
-        saved.lag_state(&coefficients.range)
+    ) -> Result<S::Wide, RestoreError> {
+        saved.wide(&coefficients.range)
     }
 
     /// x = L - L_eff obeys dx/dt = V - x³/τ, τ = T_L (1 - Af). In each half-tick L is held constant
@@ -120,7 +120,7 @@ impl<S: Scalar> ActingLength<S> for EffectiveLength {
     /// x → x/√(1 + 2 x² t/τ).
     fn advance<const N: usize>(
         coefficients: &Self::Coefficients,
-        state: &mut S::LagState,
+        state: &mut S::Wide,
         activation: S,
         moment: &Moment<S, N>,
     ) -> Option<S> {

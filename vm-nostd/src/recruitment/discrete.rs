@@ -71,11 +71,11 @@ pub struct DiscreteState<S: Scalar, A: ActingLength<S>, const UNITS: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct UnitState<S: Scalar, L> {
     /// f_int, f0.5.
-    intermediate_frequency: S::LagState,
+    intermediate_frequency: S::Wide,
     /// f_eff, f0.5.
-    effective_frequency: S::LagState,
+    effective_frequency: S::Wide,
     /// S.
-    sag: S::LagState,
+    sag: S::Wide,
     activity: Activity<S>,
     acting_length: L,
 }
@@ -123,9 +123,9 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 
     fn at_rest(&self, fibers: &[Fiber<S>; N]) -> Self::State {
         let units = self.units.map(|unit| UnitState {
-            intermediate_frequency: S::ZERO.lag_state(),
-            effective_frequency: S::ZERO.lag_state(),
-            sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).lag_state(),
+            intermediate_frequency: S::ZERO.wide(),
+            effective_frequency: S::ZERO.wide(),
+            sag: fibers.get(unit.fiber).map_or(S::ONE, |fiber| fiber.sag.resting_level).wide(),
             activity: Activity::NONE,
             acting_length: A::at_rest(),
         });
@@ -142,9 +142,9 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
             let frequencies = Range { least: S::ZERO, most: unit.firing.frequency(S::ONE) };
             let levels = fibers.get(unit.fiber).map_or(share(), |fiber| fiber.sag.range());
             *unit_state = UnitState {
-                intermediate_frequency: saved.lag_state(&frequencies)?,
-                effective_frequency: saved.lag_state(&frequencies)?,
-                sag: saved.lag_state(&levels)?,
+                intermediate_frequency: saved.wide(&frequencies)?,
+                effective_frequency: saved.wide(&frequencies)?,
+                sag: saved.wide(&levels)?,
                 activity: Activity::restored(saved)?,
                 acting_length: A::restored(&unit.acting_length, saved)?,
             };
@@ -213,13 +213,13 @@ impl<S: Scalar, A: ActingLength<S>, const N: usize, const UNITS: usize> Recruitm
 impl<S: Scalar, A: ActingLength<S>, const UNITS: usize> RecruitmentState<S>
     for DiscreteState<S, A, UNITS>
 {
-    const WORDS: usize = UNITS * (Activity::<S>::WORDS + 3 * S::LAG_STATE_WORDS + A::WORDS);
+    const WORDS: usize = UNITS * (Activity::<S>::WORDS + 3 * S::WIDE_WORDS + A::WORDS);
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         self.units.into_iter().flat_map(|unit| {
-            S::lag_state_words(unit.intermediate_frequency)
-                .chain(S::lag_state_words(unit.effective_frequency))
-                .chain(S::lag_state_words(unit.sag))
+            S::wide_words(unit.intermediate_frequency)
+                .chain(S::wide_words(unit.effective_frequency))
+                .chain(S::wide_words(unit.sag))
                 .chain(unit.activity.words())
                 .chain(A::words(unit.acting_length))
         })

@@ -112,7 +112,7 @@ impl<S: Scalar, const N: usize> RecruitmentTick<S, N> for Coefficients<S, N> {
         // Af depends on the frequency without a lag and jumps with it.
         let first = self.first_frequency(input.stimulation_frequency);
         let jumps = first != S::of(state.shared);
-        state.shared = first.lag_state();
+        state.shared = first.wide();
         let frequencies = self.units.each_ref().map(|unit| {
             S::of_quantity(input.stimulation_frequency, &unit.per_half_force_frequency)
         });

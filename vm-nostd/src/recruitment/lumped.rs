@@ -16,7 +16,7 @@ use core::array::from_fn;
 pub struct LumpedState<S: Scalar, const N: usize> {
     /// Common to all types: U_eff, 0..1 (natural continuous); f_env of the first type in the last
     /// tick, f0.5 (intramuscular FES).
-    pub(crate) shared: S::LagState,
+    pub(crate) shared: S::Wide,
     pub(super) fibers: [FiberState<S>; N],
     /// Last and predicted Af of each type.
     pub(crate) activities: [Activity<S>; N],
@@ -26,21 +26,21 @@ pub struct LumpedState<S: Scalar, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberState<S: Scalar> {
     /// f_int, f0.5 (intramuscular FES: intermediate recruitment, 0..1).
-    pub(super) intermediate_frequency: S::LagState,
+    pub(super) intermediate_frequency: S::Wide,
     /// f_eff, f0.5 (intramuscular FES: recruitment, 0..1).
-    pub(super) effective_frequency: S::LagState,
+    pub(super) effective_frequency: S::Wide,
     /// S.
-    pub(super) sag: S::LagState,
+    pub(super) sag: S::Wide,
 }
 
 impl<S: Scalar, const N: usize> LumpedState<S, N> {
     pub(super) fn at_rest(fibers: &[Fiber<S>; N]) -> Self {
         Self {
-            shared: S::ZERO.lag_state(),
+            shared: S::ZERO.wide(),
             fibers: fibers.each_ref().map(|fiber| FiberState {
-                intermediate_frequency: S::ZERO.lag_state(),
-                effective_frequency: S::ZERO.lag_state(),
-                sag: fiber.sag.resting_level.lag_state(),
+                intermediate_frequency: S::ZERO.wide(),
+                effective_frequency: S::ZERO.wide(),
+                sag: fiber.sag.resting_level.wide(),
             }),
             activities: [Activity::NONE; N],
         }
@@ -55,13 +55,13 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
         frequencies: [Range<S>; N],
     ) -> Result<Self, RestoreError> {
         let mut state = Self::at_rest(fibers);
-        state.shared = saved.lag_state(&shared)?;
+        state.shared = saved.wide(&shared)?;
         let units = state.fibers.iter_mut().zip(&mut state.activities);
         for (((fiber_state, activity), fiber), range) in units.zip(fibers).zip(&frequencies) {
             *fiber_state = FiberState {
-                intermediate_frequency: saved.lag_state(range)?,
-                effective_frequency: saved.lag_state(range)?,
-                sag: saved.lag_state(&fiber.sag.range())?,
+                intermediate_frequency: saved.wide(range)?,
+                effective_frequency: saved.wide(range)?,
+                sag: saved.wide(&fiber.sag.range())?,
             };
             *activity = Activity::restored(saved)?;
         }
@@ -70,14 +70,14 @@ impl<S: Scalar, const N: usize> LumpedState<S, N> {
 }
 
 impl<S: Scalar, const N: usize> RecruitmentState<S> for LumpedState<S, N> {
-    const WORDS: usize = S::LAG_STATE_WORDS + N * (Activity::<S>::WORDS + 3 * S::LAG_STATE_WORDS);
+    const WORDS: usize = S::WIDE_WORDS + N * (Activity::<S>::WORDS + 3 * S::WIDE_WORDS);
 
     fn words(&self) -> impl Iterator<Item = S::Bits> {
         let units = self.fibers.into_iter().zip(self.activities);
-        S::lag_state_words(self.shared).chain(units.flat_map(|(fiber, activity)| {
-            S::lag_state_words(fiber.intermediate_frequency)
-                .chain(S::lag_state_words(fiber.effective_frequency))
-                .chain(S::lag_state_words(fiber.sag))
+        S::wide_words(self.shared).chain(units.flat_map(|(fiber, activity)| {
+            S::wide_words(fiber.intermediate_frequency)
+                .chain(S::wide_words(fiber.effective_frequency))
+                .chain(S::wide_words(fiber.sag))
                 .chain(activity.words())
         }))
     }

@@ -8,7 +8,7 @@ use crate::tick::range::share;
 /// Advances S of a unit by one tick, in which it fires for the share `firing` (0..1). Returns the
 /// mid-tick S.
 #[inline(always)]
-pub(crate) fn advance_sag<S: Scalar>(fiber: &Fiber<S>, sag: &mut S::LagState, firing: S) -> S {
+pub(crate) fn advance_sag<S: Scalar>(fiber: &Fiber<S>, sag: &mut S::Wide, firing: S) -> S {
     let before = S::of(*sag);
     *sag = fiber.sag.advance(*sag, firing);
     (before + S::of(*sag)).half()

@@ -20,6 +20,9 @@ pub(crate) trait Arithmetic: Copy + PartialOrd {
     /// floating point.
     fn is_saturated(self) -> bool;
 
+    /// Product, like `*`; fixed point rounds to nearest, for sums over many substeps.
+    #[must_use]
+    fn times(self, other: Self) -> Self;
     /// Half of `self`; fixed point rounds toward minus infinity.
     #[must_use]
     fn half(self) -> Self;

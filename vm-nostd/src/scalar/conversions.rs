@@ -26,6 +26,14 @@ pub(crate) trait Conversions: Representation + Factors + Copy {
         other: Self::PathLength,
         per_metre: &Self::Factor,
     ) -> Self;
+    /// Change of the difference from `other` if `path` becomes `after`. Changes one after the other
+    /// add up to the whole one: exactly in fixed point.
+    fn path_change(
+        path: Self::PathLength,
+        after: Self::PathLength,
+        other: Self::PathLength,
+        per_metre: &Self::Factor,
+    ) -> Self;
     /// The path length one of `parts` equal parts (2 to 4) of the way from `path` to `end`.
     fn path_towards(path: Self::PathLength, end: Self::PathLength, parts: u8) -> Self::PathLength;
     /// Factor from numbers to path lengths: `metres` per 1.

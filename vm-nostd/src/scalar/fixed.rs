@@ -24,7 +24,7 @@ pub use part::Part;
 #[cfg(test)]
 pub(crate) use root::square_root as fixed_square_root;
 pub use unit::Unit;
-pub use wide::LagState;
+pub use wide::Wide;
 
 use super::constant::Constant;
 use super::sealed::Sealed;
@@ -36,7 +36,7 @@ impl Sealed for Fixed {}
 
 impl Representation for Fixed {
     type Bits = u32;
-    type LagState = LagState;
+    type Wide = Wide;
     /// µm, in steps of 2 nm, to 4.19 m.
     type PathLength = I23F9;
     type Quantity = I16F16;
@@ -60,6 +60,10 @@ impl Arithmetic for Fixed {
     fn is_saturated(self) -> bool {
         // A rounded sum can be one ULP lower.
         self >= Self::from_bits(i32::MAX - 1)
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        number::rounded_product(self, other)
     }
     #[inline(always)]
     fn half(self) -> Self {
@@ -157,8 +161,13 @@ impl Kernels for Fixed {
     fn exp(self) -> Self {
         exponential::exp(self)
     }
+    #[inline(always)]
     fn ln(self) -> Self {
         mantissa::ln(self)
+    }
+    #[inline(always)]
+    fn ln_of_product(self, factor: Self) -> Self {
+        mantissa::ln_of_product(self, factor)
     }
     #[inline(always)]
     fn softplus(self) -> (Self, Unit) {
@@ -217,10 +226,10 @@ impl Scalar for Fixed {
         Self::from_bits(bits as i32)
     }
 
-    fn lag_state(self) -> LagState {
-        LagState::new(self)
+    fn wide(self) -> Wide {
+        Wide::new(self)
     }
-    fn of(state: LagState) -> Self {
+    fn of(state: Wide) -> Self {
         state.rounded()
     }
 

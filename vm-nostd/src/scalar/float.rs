@@ -22,7 +22,7 @@ macro_rules! float {
 
         impl Representation for $float {
             type Bits = $bits;
-            type LagState = Self;
+            type Wide = Self;
             type PathLength = Self;
             type Quantity = Self;
             type Force = Self;
@@ -42,6 +42,10 @@ macro_rules! float {
             }
             fn is_saturated(self) -> bool {
                 self == Self::INFINITY
+            }
+            #[inline(always)]
+            fn times(self, other: Self) -> Self {
+                self * other
             }
             fn half(self) -> Self {
                 0.5 * self
@@ -146,6 +150,10 @@ macro_rules! float {
                 $precision::ln(self)
             }
             #[inline(always)]
+            fn ln_of_product(self, factor: Self) -> Self {
+                $precision::ln(self * factor)
+            }
+            #[inline(always)]
             fn softplus(self) -> (Self, Self) {
                 $precision::softplus(self)
             }
@@ -213,6 +221,10 @@ macro_rules! float {
                 // Adds the changes first: those of a slow lag are far below the ULP of its value.
                 state + (first.0 * first.1 + second.0 * second.1)
             }
+            #[inline(always)]
+            fn stretched(extension: Self, stretch: Self, travel: Self, tick: Self) -> Self {
+                extension + stretch - travel * tick
+            }
             fn share(value: f64) -> Self {
                 value as Self
             }
@@ -230,10 +242,10 @@ macro_rules! float {
                     Lags { response, delayed: self * (1.0 - response) },
                 ]
             }
-            fn lag_state_words(state: Self) -> impl Iterator<Item = Self::Bits> {
+            fn wide_words(state: Self) -> impl Iterator<Item = Self::Bits> {
                 core::iter::once(state.to_bits())
             }
-            fn lag_state_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
+            fn wide_from_words(words: &mut impl Iterator<Item = Self::Bits>) -> Option<Self> {
                 words.next().map(<$float>::from_bits)
             }
         }
@@ -253,6 +265,11 @@ macro_rules! float {
             }
             fn path_difference(path: Self, other: Self, per_metre: &Self) -> Self {
                 (path - other) * per_metre
+            }
+            #[inline(always)]
+            fn path_change(path: Self, after: Self, _: Self, per_metre: &Self) -> Self {
+                // Exact for paths within a factor of two; the positions would be rounded.
+                (after - path) * per_metre
             }
             fn path_towards(path: Self, end: Self, parts: u8) -> Self {
                 path + (end - path) / Self::from(parts)
@@ -315,7 +332,7 @@ macro_rules! float {
                 <$float>::from_bits(bits)
             }
 
-            fn lag_state(self) -> Self {
+            fn wide(self) -> Self {
                 self
             }
             fn of(state: Self) -> Self {

@@ -31,6 +31,10 @@ pub(crate) trait Kernels: Factors {
     /// number.
     #[must_use]
     fn ln(self) -> Self;
+    /// Natural logarithm of the product with another number, both positive or 0; unlike the product
+    /// it cannot saturate.
+    #[must_use]
+    fn ln_of_product(self, factor: Self) -> Self;
     /// `ln(exp(self) + 1)` and its slope, the logistic function of `self`, 0..1.
     fn softplus(self) -> (Self, Self::Unit);
     /// `1 - exp(-exp(self))`, the Weibull distribution as a function of the logarithm.

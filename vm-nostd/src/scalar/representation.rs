@@ -8,8 +8,8 @@ use core::fmt::Debug;
 pub trait Representation: Sealed + Sized {
     /// A word of a saved state.
     type Bits: Copy + Debug + Eq + From<u32> + TryFrom<u64> + Into<u64> + Summed + Send + Sync;
-    /// State of a lag, with more resolution than the number itself.
-    type LagState: Copy + Debug + PartialEq + Send + Sync;
+    /// State that adds up small changes, with more resolution than the number itself.
+    type Wide: Copy + Debug + PartialEq + Send + Sync;
     /// A musculotendon path length: m in floating point, µm in fixed point.
     type PathLength: Copy + Debug + PartialEq + PartialOrd + FromWords + Send + Sync;
     /// A quantity with a unit: stimulation frequency in pps, pulse amplitude in mA, pulse width in

@@ -78,7 +78,7 @@ fn unflagged<R: Recruitment<Fixed, 2>>(params: &MuscleParams<2>, units: &R::Unit
     for _ in 0..60 {
         let goal = shortest + chance.next() * (longest - shortest);
         let stride = 5e-3 * params.fascicle_length * chance.next();
-        let (activation, frequency) = (chance.next(), 80.0 * chance.next());
+        let (activation, frequency) = (chance.next(), 500.0 * chance.next());
         for _ in 0..100 {
             path += (goal - path).clamp(-stride, stride);
             let input = Input {

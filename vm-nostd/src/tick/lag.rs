@@ -18,7 +18,7 @@ summed! {
 
 /// Whether a share is from 0 to 1.
 fn is_share<S: Scalar>(share: S::Share) -> bool {
-    let moved = S::of(S::advanced(S::ZERO.lag_state(), S::ONE, share));
+    let moved = S::of(S::advanced(S::ZERO.wide(), S::ONE, share));
     moved >= S::ZERO && moved <= S::ONE
 }
 
@@ -30,12 +30,12 @@ impl<S: Scalar> Lag<S> {
     }
 
     /// Value at mid-tick.
-    pub(crate) fn at_middle(&self, start: S::LagState, target: S) -> S {
+    pub(crate) fn at_middle(&self, start: S::Wide, target: S) -> S {
         S::of(S::advanced(start, target - S::of(start), self.half))
     }
 
     /// Value at the end of the tick.
-    pub(crate) fn at_end(&self, start: S::LagState, target: S) -> S::LagState {
+    pub(crate) fn at_end(&self, start: S::Wide, target: S) -> S::Wide {
         S::advanced(start, target - S::of(start), self.whole)
     }
 }

@@ -59,6 +59,12 @@ impl Conversions for Fixed {
     fn path_difference(path: I23F9, other: I23F9, per_metre: &Factor) -> Self {
         Self::from_bits(per_metre.times(path.saturating_sub(other).to_bits()))
     }
+    #[inline(always)]
+    fn path_change(path: I23F9, after: I23F9, other: I23F9, per_metre: &Factor) -> Self {
+        // A change by itself would be rounded in every tick in the same direction.
+        let position = |path| Self::path_difference(path, other, per_metre);
+        position(after) - position(path)
+    }
     fn path_towards(path: I23F9, end: I23F9, parts: u8) -> I23F9 {
         let way = end.saturating_sub(path).to_bits();
         // Small cores have no division.
@@ -107,5 +113,27 @@ impl Conversions for Fixed {
     }
     fn of_force(force: i32, per_newton: &Factor) -> Self {
         Self::from_bits(per_newton.times(force))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_of_a_path_add_up_to_the_whole_one() {
+        let per_metre = Fixed::per_metre(1.0 / 0.11);
+        let (slack, start) = (nearest_path(0.02), nearest_path(0.1));
+        let mut path = start;
+        let mut sum = 0;
+        for tick in 0..1000 {
+            // 2 nm, 0.3 increments of length, and at times more.
+            let after = path.saturating_add(I23F9::from_bits(1 + tick % 3));
+            sum += Fixed::path_change(path, after, slack, &per_metre).to_bits();
+            path = after;
+        }
+        let whole = Fixed::path_change(start, path, slack, &per_metre).to_bits();
+        assert_eq!(sum, whole);
+        assert!((f64::from(whole) - 1999.0 / 512e6 / 0.11 * UNITS).abs() < 1.0, "{whole}");
     }
 }

@@ -3,8 +3,9 @@
 //! Both use a table of c = 1/m at the midpoints of 64 intervals, and a series in r = m c - 1,
 //! |r| < 1/128.
 
-use super::number::{Fixed, high, square};
+use super::number::{FRACTION, Fixed, exact, high, square};
 use super::product;
+use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 
 /// Bits of the index into the tables.
@@ -102,6 +103,12 @@ fn upper(a: u32, b: u32) -> u32 {
     (product::unsigned(a, b) >> 32) as u32
 }
 
+/// High word of two words shifted left by at most 31 bits.
+#[inline(always)]
+pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
+    (high << left) | (low >> 1 >> (31 - left)) as i32
+}
+
 /// ln 2 in Q1.31.
 const LN_2: i32 = 1_488_522_236;
 
@@ -109,18 +116,39 @@ const LN_2: i32 = 1_488_522_236;
 /// of one ULP.
 ///
 /// # Scaling and overflow
-/// x is shifted left until its first bit is set; the exponent is -24 to 6. The logarithm of the
-/// mantissa, -ln c + r - r²/2 + r³/3 with a truncation error of r⁴/4 < 2^-30, is below 0.7 in
-/// Q1.31. The sum is below 17 in magnitude and has 36 of 64 bits.
+/// x, at most 2^31, is extended by 24 bits to Q16.48.
+#[inline(always)]
 pub(super) fn ln(x: Fixed) -> Fixed {
-    let x = x.to_bits().max(1) as u32;
-    let zeros = x.leading_zeros();
-    let (index, _, r) = reduced(x << zeros);
+    let bits = x.to_bits().max(1);
+    ln_of_words((bits >> (32 - FRACTION), bits.cast_unsigned() << FRACTION))
+}
+
+/// ln(a b) in Q8.24 of numbers that are not negative, within 1 ULP. For 0 it is the logarithm of
+/// the least product.
+#[inline(always)]
+pub(super) fn ln_of_product(a: Fixed, b: Fixed) -> Fixed {
+    ln_of_words(exact(a.to_bits(), b.to_bits()))
+}
+
+/// Logarithm in Q8.24 of a number in Q16.48 that is not negative.
+///
+/// # Scaling and overflow
+/// The number is shifted left until its first bit is set; the exponent is -48 to 14. The logarithm
+/// of the mantissa, -ln c + r - r²/2 + r³/3 with a truncation error of r⁴/4 < 2^-30, is below 0.7
+/// in Q1.31. The sum is below 34 in magnitude and has 37 of 64 bits.
+#[inline(never)]
+fn ln_of_words((mut upper, mut lower): (i32, u32)) -> Fixed {
+    let mut power = 15;
+    if upper == 0 {
+        cold_path();
+        (upper, lower, power) = (lower.max(1).cast_signed(), 0, power - 32);
+    }
+    let zeros = upper.leading_zeros();
+    let (index, _, r) = reduced(word((upper, lower), zeros).cast_unsigned());
     // 1/3 in Q0.32.
     const THIRD: i32 = 0x5555_5555;
     let series = r - high(r, (r >> 1) - high(r, high(r, THIRD)));
     let mantissa = LOGARITHMS[index] + (series >> 1);
-    let power = 7 - zeros as i32;
-    let sum = product::signed(power, LN_2) + i64::from(mantissa + (1 << 6));
+    let sum = product::signed(power - zeros as i32, LN_2) + i64::from(mantissa + (1 << 6));
     Fixed::from_bits((sum >> 7) as i32)
 }

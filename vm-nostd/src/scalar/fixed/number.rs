@@ -80,6 +80,19 @@ impl Mul for Fixed {
     }
 }
 
+/// Product, rounded to nearest; saturates like `*`.
+///
+/// # Scaling and overflow
+/// The product is at most 2^62: adding half a unit of Q8.24 does not overflow.
+#[inline(always)]
+pub(super) fn rounded_product(a: Fixed, b: Fixed) -> Fixed {
+    let product = product::signed(a.to_bits(), b.to_bits()) + (1 << (FRACTION - 1));
+    let words = ((product >> 32) as i32, product as u32);
+    #[cfg(test)]
+    saturations::note(words.0 << 8 >> 8 != words.0);
+    Fixed::from_bits(saturated(words))
+}
+
 /// Exact product as high and low word; at most 2^62.
 #[inline(always)]
 pub(super) fn exact(a: i32, b: i32) -> (i32, u32) {

@@ -28,13 +28,19 @@ impl Part {
         high(number, self.0)
     }
 
+    /// Product with a number in any format, with 32 more fractional bits; at most 2^62.
+    #[inline(always)]
+    pub(super) fn exactly_of(self, number: i32) -> i64 {
+        product::signed(number, self.0)
+    }
+
     /// Product with a number in any format, rounded to nearest.
     ///
     /// # Scaling and overflow
     /// The product is at most 2^62: adding half a unit of its high word does not overflow.
     #[inline(always)]
     pub(super) fn rounded_of(self, number: i32) -> i32 {
-        ((product::signed(number, self.0) + (1 << 31)) >> 32) as i32
+        ((self.exactly_of(number) + (1 << 31)) >> 32) as i32
     }
 }
 

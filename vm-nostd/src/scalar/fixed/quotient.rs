@@ -1,7 +1,7 @@
 //! Quotients and reciprocals without a division: products with the reciprocal of a mantissa.
 
 use super::factor::Factor;
-use super::mantissa;
+use super::mantissa::{self, word};
 use super::number::{FRACTION, Fixed, exact};
 use core::array::from_fn;
 
@@ -57,12 +57,6 @@ pub(super) fn reciprocal(x: Fixed) -> Fixed {
 fn scaled_back(reciprocal: u32, shift: u32) -> Fixed {
     let bits = ((reciprocal + (1 << shift >> 1)) >> shift).min(i32::MAX as u32);
     Fixed::from_bits(bits as i32)
-}
-
-/// High word of two words shifted left by at most 31 bits.
-#[inline(always)]
-pub(super) fn word((high, low): (i32, u32), left: u32) -> i32 {
-    (high << left) | (low >> 1 >> (31 - left)) as i32
 }
 
 /// 1/(1 + d v) in Q8.24 for each d; the error is below 2^-24 plus 2^-28 of the value. 1 + d v is

@@ -1,8 +1,9 @@
 //! Root of a force balance with a line and a hyperbola: a quadratic equation and its square root.
 
+use super::mantissa::word;
 use super::number::{Fixed, exact, high, square};
 use super::product;
-use super::quotient::{reciprocal_factors, word};
+use super::quotient::reciprocal_factors;
 use crate::scalar::cold::cold_path;
 use crate::scalar::series;
 

@@ -1,4 +1,4 @@
-//! Shares: factors from 0 to 1 with the resolution that states of lags need.
+//! Shares: factors from 0 to 1 with the resolution that states need.
 
 use super::product;
 use crate::summed::summed_numbers;

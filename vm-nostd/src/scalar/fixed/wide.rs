@@ -1,7 +1,8 @@
-//! States of lags, Q8.56.
+//! States that add up small changes, Q8.56.
 
 use super::exponential;
 use super::number::Fixed;
+use super::part::Part;
 use super::product;
 use super::share::Share;
 use crate::scalar::{Lags, WideState};
@@ -9,11 +10,11 @@ use crate::scalar::{Lags, WideState};
 /// Q8.56 has 32 more fractional bits than Q8.24.
 const MORE_BITS: u32 = 32;
 
-/// The state of a lag in Q8.56, -128 to 128.
+/// A number in Q8.56, -128 to 128.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LagState(i64);
+pub struct Wide(i64);
 
-impl LagState {
+impl Wide {
     #[inline(always)]
     pub(super) fn new(number: Fixed) -> Self {
         Self(i64::from(number.to_bits()) << MORE_BITS)
@@ -31,12 +32,19 @@ impl LagState {
 impl WideState for Fixed {
     type Share = Share;
 
-    fn advanced(state: LagState, difference: Self, share: Share) -> LagState {
+    fn advanced(state: Wide, difference: Self, share: Share) -> Wide {
         // The result lies between two representable numbers, even if an intermediate sum wraps.
-        LagState(state.0.wrapping_add(product::mixed(difference.to_bits(), share.to_bits())))
+        Wide(state.0.wrapping_add(product::mixed(difference.to_bits(), share.to_bits())))
     }
-    fn advanced_by_two(state: LagState, first: (Self, Share), second: (Self, Share)) -> LagState {
+    fn advanced_by_two(state: Wide, first: (Self, Share), second: (Self, Share)) -> Wide {
         Self::advanced(Self::advanced(state, first.0, first.1), second.0, second.1)
+    }
+    /// # Scaling and overflow
+    /// Q8.24 times Q0.32 is Q8.56, at most 2^62, and needs no shift.
+    #[inline(always)]
+    fn stretched(state: Wide, stretch: Self, travel: Self, tick: Part) -> Wide {
+        let taken = tick.exactly_of(travel.to_bits());
+        Wide(state.0.saturating_add(Wide::new(stretch).0).saturating_sub(taken))
     }
     fn share(value: f64) -> Share {
         Share::new(value)
@@ -59,11 +67,42 @@ impl WideState for Fixed {
             Lags { response: decay.rest(), delayed: delayed(decay, 24) },
         ]
     }
-    fn lag_state_words(state: LagState) -> impl Iterator<Item = u32> {
+    fn wide_words(state: Wide) -> impl Iterator<Item = u32> {
         [state.0 as u32, (state.0 >> 32) as u32].into_iter()
     }
-    fn lag_state_from_words(words: &mut impl Iterator<Item = u32>) -> Option<LagState> {
+    fn wide_from_words(words: &mut impl Iterator<Item = u32>) -> Option<Wide> {
         let low = i64::from(words.next()?);
-        Some(LagState(i64::from(words.next()? as i32) << 32 | low))
+        Some(Wide(i64::from(words.next()? as i32) << 32 | low))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Factors, Scalar};
+
+    #[test]
+    fn travel_below_an_increment_adds_up() {
+        let tick = Fixed::part(1e-4);
+        // 2^-12 L_ce0/s for 1e-4 s: 0.41 increments.
+        let travel = Fixed::from_bits(1 << 12);
+        let mut extension = Fixed::from_f64(0.25).wide();
+        for _ in 0..1000 {
+            extension = Fixed::stretched(extension, Fixed::ZERO, travel, tick);
+        }
+        let found = Fixed::of(extension).to_bits() - Fixed::from_f64(0.25).to_bits();
+        assert_eq!(found, -410);
+    }
+
+    #[test]
+    fn extensions_saturate() {
+        let [most, least] = [i32::MAX, i32::MIN].map(Fixed::from_bits);
+        let tick = Fixed::part(0.5);
+        let stretched = |extension: Fixed, stretch, travel| {
+            Fixed::of(Fixed::stretched(extension.wide(), stretch, travel, tick))
+        };
+        assert_eq!(stretched(most, most, least), most);
+        assert_eq!(stretched(least, least, most), least);
+        assert_eq!(stretched(most, least, Fixed::ZERO), Fixed::from_bits(-1));
     }
 }

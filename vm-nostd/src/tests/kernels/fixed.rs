@@ -38,7 +38,7 @@ fn numbers<const N: usize>(seed: i64) -> [(Fixed, f64); N] {
     std::array::from_fn(|_| number(random.number().into()))
 }
 
-pub(super) const ROWS: [Row; 20] = [
+pub(super) const ROWS: [Row; 21] = [
     row("exp", "all", ALL, 1.0, Unit::MixedUlp, |unit, bits| {
         let (x, exact) = number(bits);
         unit.of(x.exp().to_f64(), saturated(exact.exp()))
@@ -73,6 +73,12 @@ pub(super) const ROWS: [Row; 20] = [
     row("ln", "positive", POSITIVE, 1.0, Unit::Ulp, |unit, bits| {
         let (x, exact) = number(bits);
         unit.of(x.ln().to_f64(), exact.ln())
+    }),
+    row("ln of a product", "positive", RANDOM, 1.0, Unit::Ulp, |unit, seed| {
+        let [(a, exact_a), (b, exact_b)] = numbers(seed);
+        let product = exact_a * exact_b;
+        let positive = exact_a > 0.0 && exact_b > 0.0;
+        if positive { unit.of(a.ln_of_product(b).to_f64(), product.ln()) } else { 0.0 }
     }),
     row("softplus", "all", ALL, 2.0, Unit::Ulp, |unit, bits| {
         let (x, exact) = number(bits);
@@ -181,7 +187,7 @@ pub(super) const ROWS: [Row; 20] = [
         let [(state, from), (difference, change)] =
             [(); 2].map(|()| number((random.number() >> 1).into()));
         let share = random.between(0.0, 1.0);
-        let moved = Fixed::advanced(state.lag_state(), difference, Fixed::share(share));
+        let moved = Fixed::advanced(state.wide(), difference, Fixed::share(share));
         unit.of(Fixed::of(moved).to_f64(), from + change * share)
     }),
 ];
