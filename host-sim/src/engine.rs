@@ -57,7 +57,7 @@ pub enum Class {
     /// Substeps of at most 0.25 ms.
     #[default]
     Standard,
-    /// Substeps of at most 0.072 ms, and ticks longer than 0.5 ms in equal parts.
+    /// Substeps of at most 0.063 ms, and ticks longer than 0.25 ms in equal parts.
     Fine,
 }
 

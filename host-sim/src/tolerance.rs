@@ -46,7 +46,7 @@ fn promises(class: Class) -> [f64; 3] {
     match class {
         Class::Economy => [5.0, 1.0, 0.5],
         Class::Standard => [1.0, 0.2, 0.1],
-        Class::Fine => [0.13, 0.065, 0.07],
+        Class::Fine => [0.05, 0.02, 0.07],
     }
 }
 

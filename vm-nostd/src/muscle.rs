@@ -10,13 +10,12 @@ use crate::fiber::Fiber;
 use crate::io::Output;
 use crate::mechanics::contraction::{Contraction, INERTIA, largest_inertia};
 use crate::params::MuscleParams;
-use crate::params::class::MOST_PARTS;
 use crate::recruitment::{
     EffectiveLength, FascicleLength, IntramuscularFes, NaturalContinuous, NaturalDiscrete,
     Recruitment, RecruitmentTick,
 };
 use crate::saved::{ROUNDING, RestoreError, Saved};
-use crate::scalar::{Arithmetic, Kernels, Scalar};
+use crate::scalar::{Arithmetic, Kernels, MOST_PARTS, Scalar};
 use crate::state::State;
 use crate::status::Status;
 use crate::summed::{Summed, summed};

@@ -17,11 +17,11 @@ mod series;
 mod wide;
 
 pub(crate) use arithmetic::Arithmetic;
-pub(crate) use conversions::Conversions;
+pub(crate) use conversions::{Conversions, MOST_PARTS};
 pub(crate) use factors::Factors;
 pub(crate) use kernels::{Balance, Kernels};
 pub use representation::Representation;
-pub(crate) use wide::{Lags, WideState};
+pub(crate) use wide::{Lags, SPANS, WideState};
 
 use crate::summed::FromWords;
 use core::fmt::Debug;

@@ -125,7 +125,7 @@ typedef struct VmFesF64 VmFesF64;
 #define VM_CLASS_ECONOMY 1
 
 /**
- * Accuracy class: substeps of 0.072 ms or less, and ticks longer than 0.5 ms in equal parts.
+ * Accuracy class: substeps of 0.063 ms or less, and ticks longer than 0.25 ms in equal parts.
  */
 #define VM_CLASS_FINE 2
 
@@ -450,7 +450,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_F32_PER_TYPE 176
+#define VM_MUSCLE_F32_PER_TYPE 184
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
@@ -565,7 +565,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_FIXED_PER_TYPE 208
+#define VM_MUSCLE_FIXED_PER_TYPE 216
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
@@ -680,7 +680,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_F64_PER_TYPE 352
+#define VM_MUSCLE_F64_PER_TYPE 360
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.

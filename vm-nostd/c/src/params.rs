@@ -11,7 +11,7 @@ use model::{
 pub const VM_CLASS_STANDARD: u32 = 0;
 /// Accuracy class: one substep a tick, unless the muscle rings too fast for that.
 pub const VM_CLASS_ECONOMY: u32 = 1;
-/// Accuracy class: substeps of 0.072 ms or less, and ticks longer than 0.5 ms in equal parts.
+/// Accuracy class: substeps of 0.063 ms or less, and ticks longer than 0.25 ms in equal parts.
 pub const VM_CLASS_FINE: u32 = 2;
 
 /// Version of header and library: major, minor and patch, two digits each.

@@ -404,7 +404,7 @@ mod tests {
         };
         let counts = [0.1, 0.5, 1.0, 2.0]
             .map(|tick| [Class::Economy, Class::Standard, Class::Fine].map(|c| count(c, tick)));
-        assert_eq!(counts, [[1, 1, 2], [1, 4, 7], [1, 4, 14], [2, 8, 28]]);
+        assert_eq!(counts, [[1, 1, 2], [1, 4, 8], [1, 4, 16], [2, 8, 32]]);
         // On a tendon this short the muscle would ring by more than half a period in a tick.
         let short = tendon_stiffness(&MuscleParams { tendon_length: 0.01, ..PAPER_MUSCLE });
         let mass = moving_mass(&PAPER_MUSCLE);
@@ -421,7 +421,7 @@ mod tests {
         let counts = |class| [0.01, 1.0, 16.0].map(|amplitude| count(class, amplitude));
         assert_eq!(counts(Class::Economy), [1, 1, 1]);
         assert_eq!(counts(Class::Standard), [4, 4, 12]);
-        assert_eq!(counts(Class::Fine), [14, 14, 27]);
+        assert_eq!(counts(Class::Fine), [16, 16, 27]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Accuracy classes: the number of parts of a tick, and of substeps of its mechanics.
 
+use crate::scalar::MOST_PARTS;
 use crate::tick::time_step::TimeStep;
 
 /// Accuracy class of a muscle, a trade-off of accuracy and cycles.
@@ -18,7 +19,7 @@ pub enum Class {
     /// Substeps of at most 0.25 ms.
     #[default]
     Standard,
-    /// Substeps of at most 0.072 ms, and all else once in 0.5 ms: a longer tick is taken in equal
+    /// Substeps of at most 0.063 ms, and all else once in 0.25 ms: a longer tick is taken in equal
     /// parts. For comparisons.
     Fine,
 }
@@ -35,11 +36,8 @@ pub(crate) struct Substeps {
 
 /// Ticks at least this long have a looser tolerance, s: 1 ms less a rounding tolerance.
 const COARSE_TICK: f64 = 0.999e-3;
-/// Longest part of a tick in the fine class, s: 0.5 ms and a rounding tolerance. In fixed point,
-/// shorter ones add more by rounding than they save.
-const LONGEST_PART: f64 = 0.501e-3;
-/// Parts of the longest tick, 2 ms.
-pub(crate) const MOST_PARTS: u8 = 4;
+/// Longest part of a tick in the fine class, s: 0.25 ms and a rounding tolerance.
+const LONGEST_PART: f64 = 0.251e-3;
 
 impl Class {
     /// Number of equal parts in which a tick is taken.
@@ -59,7 +57,7 @@ impl Class {
                 let longest = if step.seconds() >= COARSE_TICK { 0.25e-3 } else { 0.15e-3 };
                 Substeps { longest, ringing: 0.35 }
             }
-            Self::Fine => Substeps { longest: 0.072e-3, ringing: 0.15 },
+            Self::Fine => Substeps { longest: 0.063e-3, ringing: 0.15 },
         }
     }
 }
@@ -69,12 +67,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fine_ticks_are_taken_in_parts_of_at_most_half_a_millisecond() {
+    fn fine_ticks_are_taken_in_parts_of_at_most_a_quarter_of_a_millisecond() {
         let ticks = [0.1, 0.5, 0.51, 0.6, 1.0, 1.1, 1.5, 1.6, 2.0];
         let parts = |class: Class| {
             ticks.map(|tick| class.parts(TimeStep::from_seconds(tick * 1e-3).unwrap()))
         };
-        assert_eq!(parts(Class::Fine), [1, 1, 2, 2, 2, 3, 3, 4, 4]);
+        assert_eq!(parts(Class::Fine), [1, 2, 3, 3, 4, 5, 6, 7, 8]);
         assert_eq!(parts(Class::Standard), [1; 9]);
         assert_eq!(parts(Class::Economy), [1; 9]);
     }

@@ -3,6 +3,9 @@
 use super::constant::Constant;
 use super::{Factors, Representation};
 
+/// Most parts in which the change of a path is taken.
+pub(crate) const MOST_PARTS: u8 = 8;
+
 /// Conversion between numbers and values with a unit.
 pub(crate) trait Conversions: Representation + Factors + Copy {
     /// Number of the arithmetic in a saved state.
@@ -34,7 +37,7 @@ pub(crate) trait Conversions: Representation + Factors + Copy {
         other: Self::PathLength,
         per_metre: &Self::Factor,
     ) -> Self;
-    /// The path length one of `parts` equal parts (2 to 4) of the way from `path` to `end`.
+    /// The path length one of `parts` equal parts (2 to [`MOST_PARTS`]) of the way from `path` to `end`.
     fn path_towards(path: Self::PathLength, end: Self::PathLength, parts: u8) -> Self::PathLength;
     /// Factor from numbers to path lengths: `metres` per 1.
     fn path_factor(metres: f64) -> Self::Factor;

@@ -2,8 +2,8 @@
 
 use super::factor::{Factor, QUANTITY_UNITS, UNITS, nearest};
 use super::number::Fixed;
-use crate::scalar::Conversions;
 use crate::scalar::constant::Constant;
+use crate::scalar::{Conversions, MOST_PARTS};
 use crate::summed::summed_numbers;
 use fixed::types::{I16F16, I23F9};
 
@@ -24,8 +24,17 @@ pub(super) fn value(number: Fixed) -> f64 {
     f64::from(number.to_bits()) / UNITS
 }
 
-/// 1/3 in 2^-32, rounded up.
-const THIRD: i64 = 0x5555_5556;
+/// 2^32 over the number of parts of a way, rounded up, from 2 on.
+const PER_PARTS: [i64; MOST_PARTS as usize - 1] = {
+    let mut reciprocals = [0; MOST_PARTS as usize - 1];
+    let mut index = 0;
+    while index < reciprocals.len() {
+        let parts = index as i64 + 2;
+        reciprocals[index] = ((1 << 32) + parts - 1) / parts;
+        index += 1;
+    }
+    reciprocals
+};
 
 /// The nearest path length to one in m, saturated.
 pub(super) fn nearest_path(metres: f64) -> I23F9 {
@@ -66,14 +75,10 @@ impl Conversions for Fixed {
         position(after) - position(path)
     }
     fn path_towards(path: I23F9, end: I23F9, parts: u8) -> I23F9 {
-        let way = end.saturating_sub(path).to_bits();
         // Small cores have no division.
-        let part = match parts {
-            2 => way >> 1,
-            3 => ((i64::from(way) * THIRD) >> 32) as i32,
-            _ => way >> 2,
-        };
-        path.saturating_add(I23F9::from_bits(part))
+        let share = PER_PARTS.get(usize::from(parts).wrapping_sub(2)).copied().unwrap_or(1 << 32);
+        let way = i64::from(end.saturating_sub(path).to_bits());
+        path.saturating_add(I23F9::from_bits(((way * share) >> 32) as i32))
     }
     fn path_factor(metres: f64) -> Factor {
         Factor::new(metres * PATH_UNITS / UNITS)

@@ -25,16 +25,15 @@ static POWERS_OF_TWO: [u32; POWERS] = {
 #[cfg(test)]
 pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
 
-/// e^x as a mantissa in Q1.31 and the exponent of a power of two.
+/// 2^t as a mantissa in Q1.31 and the exponent of a power of two, for t in Q10.54.
 ///
 /// # Scaling and overflow
-/// x log2 e is below 185 in magnitude and held in Q10.54. The first five bits of its fraction are
+/// t = x log2 e is below 185 in magnitude. The first five bits of its fraction are
 /// the index into the table. The rest, minus half a step, times ln 2 is y, |y| < 2^-6.5. The series
 /// y + y²/2 + y³/6 has a truncation error of y⁴/24 < 2^-30; it is below 2^26 in Q0.32, and its
 /// product with half the entry below 2^25. The mantissa is 1 to 2; rounding can make it slightly
 /// less than 1.
-fn parts(x: Fixed) -> (u32, i32) {
-    let (twos, low) = exact(x.to_bits(), LOG2_E);
+fn parts((twos, low): (i32, u32)) -> (u32, i32) {
     let fraction = ((twos as u32) << 10) | (low >> 22);
     let index = (fraction >> (32 - POWER_BITS)) as usize;
     let rest = fraction << POWER_BITS >> POWER_BITS;
@@ -61,20 +60,33 @@ fn shifted(mantissa: u32, shift: u32) -> u32 {
 /// Exponents are -185 to 184. The mantissa in Q1.31 is shifted right by 7 - exponent to Q8.24. From
 /// an exponent of 7 on the result saturates; below -25 the shift exceeds 32 and the result is 0.
 pub(super) fn exp(x: Fixed) -> Fixed {
-    let (mantissa, exponent) = parts(x);
+    let (mantissa, exponent) = parts(exact(x.to_bits(), LOG2_E));
     let bits =
         if exponent >= 7 { i32::MAX } else { shifted(mantissa, (7 - exponent) as u32) as i32 };
     Fixed::from_bits(bits)
 }
 
 /// e^-x in Q0.32 for x >= 0, clamped to one unit below 1; the error is below 8 units.
+#[inline(always)]
+pub(super) fn decay(x: Fixed) -> Share {
+    decay_of(exact(-x.to_bits().max(0), LOG2_E))
+}
+
+/// [`decay`] of x in Q8.24 over 2^`bits`, 1 to 31.
+#[inline(always)]
+pub(super) fn decay_by_parts(x: i32, bits: u32) -> Share {
+    let (high, low) = exact(-x, LOG2_E);
+    decay_of((high >> bits, (high << (32 - bits)).cast_unsigned() | (low >> bits)))
+}
+
+/// 2^t in Q0.32 for t <= 0 in Q10.54, clamped to one unit below 1.
 ///
 /// # Scaling and overflow
 /// For x > 0 the exponent is negative: the Q1.31 mantissa is shifted right by 0 or more. For x = 0
 /// the result would be 2^32 and is clamped to 2^32 - 1.
 #[inline(always)]
-pub(super) fn decay(x: Fixed) -> Share {
-    let (mantissa, exponent) = parts(Fixed::from_bits(-x.to_bits().max(0)));
+fn decay_of(twos: (i32, u32)) -> Share {
+    let (mantissa, exponent) = parts(twos);
     match -1 - exponent {
         ..=-1 => Share::MOST,
         0 => Share::from_bits(mantissa),

@@ -5,10 +5,12 @@ use super::number::Fixed;
 use super::part::Part;
 use super::product;
 use super::share::Share;
-use crate::scalar::{Lags, WideState};
+use crate::scalar::{Lags, SPANS, WideState};
 
 /// Q8.56 has 32 more fractional bits than Q8.24.
 const MORE_BITS: u32 = 32;
+/// [`SPANS`] as a power of two.
+const SPAN_BITS: u32 = (SPANS as u32).trailing_zeros();
 
 /// A number in Q8.56, -128 to 128.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,19 +54,20 @@ impl WideState for Fixed {
     fn lag_response(self) -> Share {
         exponential::decay(self).rest()
     }
-    /// Most of the error of each is from halving x, which can truncate half an ULP.
+    /// # Scaling and overflow
+    /// The Q8.24 number is x in Q3.29, and x/2 in Q2.30.
     #[inline(always)]
     fn lags(self) -> [Lags<Share>; 2] {
         let x = self.to_bits().max(0);
-        let decay_at_half = exponential::decay(Self::from_bits(x >> 1));
+        let decay_at_half = exponential::decay_by_parts(x, SPAN_BITS + 1);
         let decay = decay_at_half.squared();
-        // x exp(-x) is below 0.37: Q8.24 times Q0.32, shifted, is Q0.32 again.
+        // x exp(-x) is below 0.37: Q3.29 times Q0.32, shifted, is Q0.32 again.
         let delayed = |decay: Share, shift: u32| {
             Share::from_bits((product::unsigned(x as u32, decay.to_bits()) >> shift) as u32)
         };
         [
-            Lags { response: decay_at_half.rest(), delayed: delayed(decay_at_half, 25) },
-            Lags { response: decay.rest(), delayed: delayed(decay, 24) },
+            Lags { response: decay_at_half.rest(), delayed: delayed(decay_at_half, 30) },
+            Lags { response: decay.rest(), delayed: delayed(decay, 29) },
         ]
     }
     fn wide_words(state: Wide) -> impl Iterator<Item = u32> {

@@ -4,7 +4,7 @@ use super::arguments::{Arguments, Random};
 use super::single::{larger, logistic, response, softplus, weibull};
 use super::{Row, Unit};
 use crate::scalar::fixed::{Fixed, fixed_square_root};
-use crate::scalar::{Factors, Kernels, Scalar, WideState};
+use crate::scalar::{Factors, Kernels, SPANS, Scalar, WideState};
 
 const ALL: Arguments = Arguments::Bits(i32::MIN as i64, i32::MAX as i64);
 const POSITIVE: Arguments = Arguments::Bits(1, i32::MAX as i64);
@@ -58,11 +58,12 @@ pub(super) const ROWS: [Row; 21] = [
     row(
         "two lags in series",
         "0..2.5",
-        Arguments::Bits(0, 40 << 20),
-        256.0,
+        Arguments::Bits(0, 80 << 24),
+        20.0,
         Unit::ShareUlp,
         |unit, bits| {
             let (x, exact) = number(bits);
+            let exact = exact / SPANS;
             x.lags().into_iter().zip([0.5 * exact, exact]).fold(0.0, |largest, (lags, x)| {
                 let response = unit.of(share(lags.response), response(x));
                 let delayed = unit.of(share(lags.delayed), x * (-x).exp());
