@@ -33,6 +33,7 @@ pub(super) const TABLE_BYTES: usize = POWERS * size_of::<u32>();
 /// y + y²/2 + y³/6 has a truncation error of y⁴/24 < 2^-30; it is below 2^26 in Q0.32, and its
 /// product with half the entry below 2^25. The mantissa is 1 to 2; rounding can make it slightly
 /// less than 1.
+#[inline(never)]
 fn parts((twos, low): (i32, u32)) -> (u32, i32) {
     let fraction = ((twos as u32) << 10) | (low >> 22);
     let index = (fraction >> (32 - POWER_BITS)) as usize;
