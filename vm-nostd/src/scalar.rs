@@ -21,7 +21,7 @@ pub(crate) use conversions::{Conversions, MOST_PARTS};
 pub(crate) use factors::Factors;
 pub(crate) use kernels::{Balance, Kernels};
 pub use representation::Representation;
-pub(crate) use wide::{Lags, SPANS, WideState};
+pub(crate) use wide::{Lags, WideState};
 
 use crate::summed::FromWords;
 use core::fmt::Debug;

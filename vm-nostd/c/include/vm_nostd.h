@@ -450,7 +450,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_F32_PER_TYPE 184
+#define VM_MUSCLE_F32_PER_TYPE 176
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
@@ -565,7 +565,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_FIXED_PER_TYPE 216
+#define VM_MUSCLE_FIXED_PER_TYPE 208
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.
@@ -680,7 +680,7 @@ typedef struct VmFesF64 VmFesF64;
 /**
  * Each type.
  */
-#define VM_MUSCLE_F64_PER_TYPE 360
+#define VM_MUSCLE_F64_PER_TYPE 352
 
 /**
  * Bytes of memory of a muscle in a discrete mode without fibre types, and of each type.

@@ -14,7 +14,7 @@ arithmetic! {
     Newtons = f32,
     Word = u32,
     MUSCLE_BASE = 200,
-    MUSCLE_PER_TYPE = 184,
+    MUSCLE_PER_TYPE = 176,
     UNITS_BASE = 4336,
     UNITS_PER_TYPE = 144,
     STEADY_BASE = 160,

@@ -14,7 +14,7 @@ arithmetic! {
     Newtons = f64,
     Word = u64,
     MUSCLE_BASE = 392,
-    MUSCLE_PER_TYPE = 360,
+    MUSCLE_PER_TYPE = 352,
     UNITS_BASE = 8136,
     UNITS_PER_TYPE = 288,
     STEADY_BASE = 312,

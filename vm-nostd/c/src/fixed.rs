@@ -71,7 +71,7 @@ arithmetic! {
     Newtons = i32,
     Word = u32,
     MUSCLE_BASE = 256,
-    MUSCLE_PER_TYPE = 216,
+    MUSCLE_PER_TYPE = 208,
     UNITS_BASE = 5928,
     UNITS_PER_TYPE = 160,
     STEADY_BASE = 216,

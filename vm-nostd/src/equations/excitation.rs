@@ -5,8 +5,7 @@
 
 use crate::error::{ParameterError, within};
 use crate::scalar::cold::cold_path;
-use crate::scalar::constant::Constant;
-use crate::scalar::{Lags, SPANS, Scalar};
+use crate::scalar::{Lags, Scalar};
 use crate::summed::summed;
 use crate::tick::time_step::TimeStep;
 use core::array::from_fn;
@@ -44,8 +43,6 @@ summed! {
     pub struct Excitation<S: Scalar> {
         /// A tick, in the unit of the time constants, which is 2^k ticks.
         tick: S,
-        /// [`SPANS`] ticks, in the same unit.
-        span: S,
         // Time constants, in that unit.
         rise: S,
         rise_per_frequency: S,
@@ -70,8 +67,6 @@ pub(crate) struct Excited<S: Scalar> {
 const LONGEST_FASCICLE: f64 = 2.0;
 const SHORTEST_FASCICLE: f64 = 0.4;
 const HIGHEST_FREQUENCY: f64 = 100.0;
-/// [`SPANS`] as a number.
-const SPAN: Constant = Constant::new(SPANS);
 /// Upper bound of a time constant, in its unit.
 const LARGEST_TIME_CONSTANT: f64 = 100.0;
 
@@ -86,7 +81,6 @@ impl<S: Scalar> Excitation<S> {
         }
         Self {
             tick: S::from_f64(step.seconds() / unit),
-            span: S::from_f64(SPANS * step.seconds() / unit),
             rise: S::from_f64(params.rise / unit),
             rise_per_frequency: S::from_f64(params.rise_per_frequency / unit),
             fall: S::from_f64(params.fall / unit),
@@ -137,8 +131,7 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
         lead[i] > S::ZERO || lead[i] == S::ZERO && excess[i] <= S::ZERO
     });
     let time_constants: [S; N] = from_fn(|i| if rises[i] { rising[i] } else { falling[i] });
-    // SPANS x.
-    let mut spans = S::ratios(types.each_ref().map(|t| t.excitation.span), time_constants);
+    let mut spans = S::ratios(types.each_ref().map(|t| t.excitation.tick.span()), time_constants);
     for i in 0..N {
         // f_int - f_eff = (lead - excess x) exp(-x) changes sign at x = lead/excess. Before that
         // x grows with one time constant, after it with the other.
@@ -147,8 +140,8 @@ pub(crate) fn advance<S: Scalar, const N: usize>(
             cold_path();
             let before = lead[i].abs().ratio(excess[i].abs());
             let other = if rises[i] { falling[i] } else { rising[i] };
-            let x = before + (tick - before * time_constants[i]).ratio(other);
-            spans[i] = x * S::constant(&SPAN);
+            let after = (tick - before * time_constants[i]).span().ratio(other);
+            spans[i] = before.span() + after;
         }
     }
 

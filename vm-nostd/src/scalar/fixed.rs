@@ -24,6 +24,8 @@ pub use part::Part;
 #[cfg(test)]
 pub(crate) use root::square_root as fixed_square_root;
 pub use unit::Unit;
+#[cfg(test)]
+pub(crate) use wide::SPAN_BITS;
 pub use wide::Wide;
 
 use super::constant::Constant;

@@ -8,8 +8,7 @@ mod tests;
 use super::constant::Constant;
 use super::sealed::Sealed;
 use super::{
-    Arithmetic, Balance, Conversions, Factors, Kernels, Lags, Representation, SPANS, Scalar,
-    WideState,
+    Arithmetic, Balance, Conversions, Factors, Kernels, Lags, Representation, Scalar, WideState,
 };
 
 /// `f64` functions that are used when a muscle is built.
@@ -232,15 +231,19 @@ macro_rules! float {
             fn lag_response(self) -> Self {
                 $precision::one_minus_exp(self)
             }
+            #[inline(always)]
+            fn span(self) -> Self {
+                self
+            }
             /// In `f32` the relative error of each is below 3.2e-6.
             #[inline(always)]
             fn lags(self) -> [Lags<Self>; 2] {
-                let half = self * (0.5 / SPANS) as Self;
+                let half = self * 0.5;
                 let response_at_half = $precision::short_lag_response(half);
                 let response = response_at_half * (2.0 - response_at_half);
                 [
                     Lags { response: response_at_half, delayed: half * (1.0 - response_at_half) },
-                    Lags { response, delayed: (half + half) * (1.0 - response) },
+                    Lags { response, delayed: self * (1.0 - response) },
                 ]
             }
             fn wide_words(state: Self) -> impl Iterator<Item = Self::Bits> {

@@ -4,9 +4,6 @@ use super::{Factors, Representation};
 use crate::summed::FromWords;
 use core::fmt::Debug;
 
-/// Factor of the argument of [`WideState::lags`]; a power of two.
-pub(crate) const SPANS: f64 = 32.0;
-
 /// Lags, extensions and their states.
 pub(crate) trait WideState: Representation + Factors {
     /// Share, 0..1, of the distance of a lag to its target.
@@ -34,8 +31,12 @@ pub(crate) trait WideState: Representation + Factors {
     fn share(value: f64) -> Self::Share;
     /// Step response of a lag after `self` time constants: 1 - exp(-`self`).
     fn lag_response(self) -> Self::Share;
-    /// Step response of two lags in series after half of x and after x time constants, at most 2.5.
-    /// `self` is [`SPANS`] x: in fixed point, x itself would have few bits for slow lags.
+    /// A number of time constants, below 4, as an argument of [`lags`](Self::lags): in fixed point
+    /// it is larger, for the number itself would have few bits for slow lags.
+    #[must_use]
+    fn span(self) -> Self;
+    /// Step response of two lags in series after half of x and after x time constants, at most 2.5,
+    /// for the span of x.
     fn lags(self) -> [Lags<Self::Share>; 2];
     /// Words of a state.
     fn wide_words(state: Self::Wide) -> impl Iterator<Item = Self::Bits>;

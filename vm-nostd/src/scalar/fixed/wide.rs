@@ -5,12 +5,12 @@ use super::number::Fixed;
 use super::part::Part;
 use super::product;
 use super::share::Share;
-use crate::scalar::{Lags, SPANS, WideState};
+use crate::scalar::{Lags, WideState};
 
 /// Q8.56 has 32 more fractional bits than Q8.24.
 const MORE_BITS: u32 = 32;
-/// [`SPANS`] as a power of two.
-const SPAN_BITS: u32 = (SPANS as u32).trailing_zeros();
+/// A span of 1 is 2^5.
+pub(crate) const SPAN_BITS: u32 = 5;
 
 /// A number in Q8.56, -128 to 128.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,13 @@ impl WideState for Fixed {
         exponential::decay(self).rest()
     }
     /// # Scaling and overflow
-    /// The Q8.24 number is x in Q3.29, and x/2 in Q2.30.
+    /// The number is below 4.
+    #[inline(always)]
+    fn span(self) -> Self {
+        Self::from_bits(self.to_bits() << SPAN_BITS)
+    }
+    /// # Scaling and overflow
+    /// A span of x in Q8.24 is x in Q3.29, and x/2 in Q2.30.
     #[inline(always)]
     fn lags(self) -> [Lags<Share>; 2] {
         let x = self.to_bits().max(0);

@@ -3,8 +3,8 @@
 use super::arguments::{Arguments, Random};
 use super::single::{larger, logistic, response, softplus, weibull};
 use super::{Row, Unit};
-use crate::scalar::fixed::{Fixed, fixed_square_root};
-use crate::scalar::{Factors, Kernels, SPANS, Scalar, WideState};
+use crate::scalar::fixed::{Fixed, SPAN_BITS, fixed_square_root};
+use crate::scalar::{Factors, Kernels, Scalar, WideState};
 
 const ALL: Arguments = Arguments::Bits(i32::MIN as i64, i32::MAX as i64);
 const POSITIVE: Arguments = Arguments::Bits(1, i32::MAX as i64);
@@ -63,7 +63,7 @@ pub(super) const ROWS: [Row; 21] = [
         Unit::ShareUlp,
         |unit, bits| {
             let (x, exact) = number(bits);
-            let exact = exact / SPANS;
+            let exact = exact / f64::from(1 << SPAN_BITS);
             x.lags().into_iter().zip([0.5 * exact, exact]).fold(0.0, |largest, (lags, x)| {
                 let response = unit.of(share(lags.response), response(x));
                 let delayed = unit.of(share(lags.delayed), x * (-x).exp());
