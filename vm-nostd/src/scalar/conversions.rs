@@ -37,7 +37,7 @@ pub(crate) trait Conversions: Representation + Factors + Copy {
         other: Self::PathLength,
         per_metre: &Self::Factor,
     ) -> Self;
-    /// The path length one of `parts` equal parts (2 to [`MOST_PARTS`]) of the way from `path` to `end`.
+    /// The path length one of `parts` equal parts (2 to [`MOST_PARTS`]) from `path` to `end`.
     fn path_towards(path: Self::PathLength, end: Self::PathLength, parts: u8) -> Self::PathLength;
     /// Factor from numbers to path lengths: `metres` per 1.
     fn path_factor(metres: f64) -> Self::Factor;
