@@ -348,37 +348,51 @@ fn a_slack_muscle_rests_where_it_does_in_f64() {
     }
 }
 
-/// Relative force at ticks of 0.1 ms after half a second at an activation, on a path that the
-/// fascicles had to leave slowly.
-fn settled_force<S: Scalar>(activation: f64) -> f64
-where
-    NaturalContinuous: AnyMode<S>,
-{
-    let step = TimeStep::from_seconds(1e-4).expect("a tick");
-    let muscle = built::<S, NaturalContinuous>(&MUSCLE, step);
-    let (shortest, longest) = MUSCLE.path_domain();
+/// Relative forces of a held input at ticks of 0.1 ms, from rest at mid-range.
+fn held<S: Scalar, R: AnyMode<S>>(
+    params: &MuscleParams<2>,
+    activation: f64,
+    frequency: f64,
+    ticks: usize,
+) -> Vec<f64> {
+    let muscle = built::<S, R>(params, TimeStep::from_seconds(1e-4).expect("a tick"));
+    let (shortest, longest) = params.path_domain();
     let path = 0.4 * shortest + 0.6 * longest;
     let mut state = muscle.rest_at_metres(path).expect("in range");
     let input = Input {
         activation: S::from_f64(activation),
         path_length: S::path_length(path),
-        stimulation_frequency: S::quantity(0.0),
+        stimulation_frequency: S::quantity(frequency),
     };
-    let mut force = 0.0;
-    for _ in 0..5000 {
-        force = muscle.step(&mut state, input).relative_force.to_f64();
-    }
-    force
+    (0..ticks).map(|_| muscle.step(&mut state, input).relative_force.to_f64()).collect()
 }
 
-/// In a tick of 0.1 ms, 3e-4 L_ce0/s is half of 2^-24 L_ce0. FV changes by a thousandth of F0 in
-/// twice that: fascicles that stood still would carry as much too little or too much.
+/// Half an increment of length, 2^-25 L_ce0, in a tick of 0.1 ms is 3e-4 L_ce0/s, at which FV
+/// differs from 1 by some 3e-4. Fascicles that stood still below it would carry as much too little
+/// or too much.
 #[test]
 fn fascicles_that_creep_by_less_than_an_increment_a_tick_move() {
     for activation in [0.2, 0.5, 1.0] {
-        let found = settled_force::<Fixed>(activation);
-        let expected = settled_force::<f64>(activation);
+        let [found, expected] = [
+            held::<Fixed, NaturalContinuous>(&MUSCLE, activation, 0.0, 5000)[4999],
+            held::<f64, NaturalContinuous>(&MUSCLE, activation, 0.0, 5000)[4999],
+        ];
         let error = (found - expected).abs();
         assert!(error < 1e-5, "{activation}: {found} F0 for {expected}");
     }
+}
+
+/// At 500 pps f_int rises in a second: in a tick of 0.1 ms by a ten-thousandth of its distance,
+/// which has some thousand increments.
+#[test]
+fn excitation_that_rises_in_seconds_rises_as_fast_as_in_f64() {
+    let mut params = MUSCLE;
+    for fiber in &mut params.fibers {
+        fiber.fiber_type.half_force_frequency = 8.0;
+    }
+    let found = held::<Fixed, IntramuscularFes>(&params, 1.0, 500.0, 40_000);
+    let expected = held::<f64, IntramuscularFes>(&params, 1.0, 500.0, 40_000);
+    let errors = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
+    let largest = errors.fold(0.0, f64::max);
+    assert!(largest < 1e-4, "{largest:e} F0");
 }
