@@ -273,7 +273,7 @@ macro_rules! float {
             #[inline(always)]
             fn path_change(path: Self, after: Self, _: Self, per_metre: &Self) -> Self {
                 // Exact for paths within a factor of two; the positions would be rounded.
-                (after - path) * per_metre
+                Self::path_difference(after, path, per_metre)
             }
             fn path_towards(path: Self, end: Self, parts: u8) -> Self {
                 path + (end - path) / Self::from(parts)

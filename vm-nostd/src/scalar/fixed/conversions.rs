@@ -126,6 +126,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn equal_parts_of_a_way_are_equal() {
+        for (parts, way) in (2..=MOST_PARTS).flat_map(|p| [1_000_003, -1_000_003].map(|w| (p, w))) {
+            let [start, end] = [0, way].map(I23F9::from_bits);
+            let mut path = start;
+            for left in (2..=parts).rev() {
+                path = Fixed::path_towards(path, end, left);
+                let done = f64::from(parts - left + 1) / f64::from(parts);
+                let error = f64::from(path.to_bits()) - done * f64::from(way);
+                // Each part is rounded down; the rest of the way takes up what was lost.
+                assert!(error.abs() < 3.0, "{parts} {way}: {error}");
+            }
+        }
+    }
+
+    #[test]
     fn changes_of_a_path_add_up_to_the_whole_one() {
         let per_metre = Fixed::per_metre(1.0 / 0.11);
         let (slack, start) = (nearest_path(0.02), nearest_path(0.1));

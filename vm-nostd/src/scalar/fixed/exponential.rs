@@ -73,9 +73,9 @@ pub(super) fn decay(x: Fixed) -> Share {
     decay_of(exact(-x.to_bits().max(0), LOG2_E))
 }
 
-/// [`decay`] of x in Q8.24 over 2^`bits`, 1 to 31.
+/// [`decay`] of a number in Q8.24 divided by 2^`bits`; `bits` is 1 to 31.
 #[inline(always)]
-pub(super) fn decay_by_parts(x: i32, bits: u32) -> Share {
+pub(super) fn decay_over(x: i32, bits: u32) -> Share {
     let (high, low) = exact(-x, LOG2_E);
     decay_of((high >> bits, (high << (32 - bits)).cast_unsigned() | (low >> bits)))
 }

@@ -9,7 +9,7 @@ use crate::scalar::{Lags, WideState};
 
 /// Q8.56 has 32 more fractional bits than Q8.24.
 const MORE_BITS: u32 = 32;
-/// A span of 1 is 2^5.
+/// A span is a number of time constants times 2^5.
 pub(crate) const SPAN_BITS: u32 = 5;
 
 /// A number in Q8.56, -128 to 128.
@@ -65,7 +65,7 @@ impl WideState for Fixed {
     #[inline(always)]
     fn lags(self) -> [Lags<Share>; 2] {
         let x = self.to_bits().max(0);
-        let decay_at_half = exponential::decay_by_parts(x, SPAN_BITS + 1);
+        let decay_at_half = exponential::decay_over(x, SPAN_BITS + 1);
         let decay = decay_at_half.squared();
         // x exp(-x) is below 0.37: Q3.29 times Q0.32, shifted, is Q0.32 again.
         let delayed = |decay: Share, shift: u32| {

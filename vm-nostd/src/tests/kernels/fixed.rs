@@ -4,7 +4,7 @@ use super::arguments::{Arguments, Random};
 use super::single::{larger, logistic, response, softplus, weibull};
 use super::{Row, Unit};
 use crate::scalar::fixed::{Fixed, SPAN_BITS, fixed_square_root};
-use crate::scalar::{Factors, Kernels, Scalar, WideState};
+use crate::scalar::{Arithmetic, Factors, Kernels, Scalar, WideState};
 
 const ALL: Arguments = Arguments::Bits(i32::MIN as i64, i32::MAX as i64);
 const POSITIVE: Arguments = Arguments::Bits(1, i32::MAX as i64);
@@ -38,7 +38,7 @@ fn numbers<const N: usize>(seed: i64) -> [(Fixed, f64); N] {
     std::array::from_fn(|_| number(random.number().into()))
 }
 
-pub(super) const ROWS: [Row; 21] = [
+pub(super) const ROWS: [Row; 22] = [
     row("exp", "all", ALL, 1.0, Unit::MixedUlp, |unit, bits| {
         let (x, exact) = number(bits);
         unit.of(x.exp().to_f64(), saturated(exact.exp()))
@@ -151,6 +151,12 @@ pub(super) const ROWS: [Row; 21] = [
         let exact = x * y;
         // On overflow it is within 255 ULP of the limit.
         if saturated(exact) == exact { unit.of((a * b).to_f64(), exact) } else { 0.0 }
+    }),
+    row("product to nearest", "not saturated", RANDOM, 0.6, Unit::Ulp, |unit, seed| {
+        let [(a, x), (b, y)] = numbers(seed);
+        let exact = x * y;
+        // On overflow it is within 255 ULP of the limit.
+        if saturated(exact) == exact { unit.of(a.times(b).to_f64(), exact) } else { 0.0 }
     }),
     row(
         "product with a factor",
