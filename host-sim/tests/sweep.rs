@@ -226,3 +226,34 @@ fn invalid_variations_are_refused() {
     let message = String::from_utf8_lossy(&done.expect("vm runs").stderr).into_owned();
     assert!(message.contains("--case 2: must be below 2"), "{message}");
 }
+
+/// A complete table of a random sweep whose cases all have this error, % of F0.
+fn table(output: &Path, error: &str) {
+    use host_sim::sweep::{KEYS, Space};
+    let space = Space::new(&[], vec![host_sim::reference::Mode::Fes], Some((1000, 1)));
+    let space = space.expect("a space");
+    let names = KEYS.map(|key| key.name).join(",");
+    let measured = ["max_pct_f0", "rms_pct_f0", "bias_pct_f0", "status"];
+    let columns = measured.map(|column| format!("f32_{column}")).join(",");
+    let mut text = format!(
+        "# vm sweep --random 1000 --seed 1 --modes fes --arithmetics f32 # {}\n\
+         case,mode,{names},{columns},problem\n",
+        host_sim::golden::model()
+    );
+    for number in 0..space.count() {
+        let values = space.case(number).values.map(|value| value.to_string()).join(",");
+        text.push_str(&format!("{number},fes,{values},{error},0,0,ok,\n"));
+    }
+    fs::write(output, text).expect("a table");
+}
+
+#[test]
+fn a_broken_promise_fails_the_command() {
+    let folder = Folder::new();
+    let arguments = ["--random", "1000", "--modes", "fes", "--arithmetics", "f32"];
+    let (kept, broken) = (folder.path("kept.csv"), folder.path("broken.csv"));
+    table(&kept, "0.09");
+    assert!(swept(&arguments, &kept).contains("kept"));
+    table(&broken, "0.11");
+    refused(&arguments, &broken, &["promise broken: f32"]);
+}

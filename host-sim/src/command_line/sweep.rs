@@ -128,22 +128,33 @@ pub fn run(args: &SweepArgs) -> Result<(), Box<dyn Error>> {
         ]);
     }
     print(&table)?;
-    print(&summary(&sweep, &ledger, args.random.is_some() && args.vary.is_empty()))?;
+    let is_promised =
+        args.vary.is_empty() && args.random.is_some_and(|n| n >= Promise::LEAST_CASES);
+    let (summary, broken) = summary(&sweep, &ledger, is_promised);
+    print(&summary)?;
     let refused = ledger.rows().filter(|(_, row)| row.last().is_some_and(|p| !p.is_empty()));
     let (count, refused) = (sweep.space.count(), refused.count());
     print(&format!("{count} cases in {}, {refused} with a refusal", output.display()))?;
-    Ok(())
+    match broken.as_slice() {
+        [] => Ok(()),
+        broken => Err(format!("promise broken: {}", broken.join(", ")).into()),
+    }
 }
 
-/// The table of what unflagged cases exceed. Classes promise it of random muscles in the default
-/// ranges only.
-fn summary(sweep: &Sweep, ledger: &Ledger, is_promised: bool) -> String {
+/// The table of what unflagged cases exceed, and the arithmetics that break the promise, if there
+/// is one: classes promise it of random muscles in the default ranges only.
+fn summary(sweep: &Sweep, ledger: &Ledger, is_promised: bool) -> (String, Vec<&'static str>) {
     let promise = Promise::of(sweep.class);
     let beyond = format!("beyond {} % F0, %", promise.common_pct_f0);
     let header = ["class", "arithmetic", "cases", "flagged, %", &beyond, "worst, % F0", "promised"];
     let mut table = markdown_table(&header, []);
+    let mut broken = Vec::new();
     for summary in sweep.summaries(ledger) {
-        let kept = if summary.keeps(promise) { "kept" } else { "BROKEN" };
+        let keeps = summary.keeps(promise);
+        let kept = if keeps { "kept" } else { "BROKEN" };
+        if is_promised && !keeps {
+            broken.push(summary.arithmetic.name());
+        }
         let (share, worst) = (promise.beyond_pct, promise.worst_pct_f0);
         table.add_row([
             sweep.class.name().to_owned(),
@@ -155,7 +166,11 @@ fn summary(sweep: &Sweep, ledger: &Ledger, is_promised: bool) -> String {
             if is_promised { format!("{share} %, {worst}: {kept}") } else { "-".to_owned() },
         ]);
     }
-    format!("{table}\nUnflagged cases; a promise is that of random sweeps without --vary.")
+    let note = format!(
+        "Unflagged cases; a promise is that of --random from {} on without --vary.",
+        Promise::LEAST_CASES
+    );
+    (format!("{table}\n{note}"), broken)
 }
 
 /// Writes a case to files, and prints its errors.

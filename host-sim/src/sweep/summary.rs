@@ -17,6 +17,10 @@ pub struct Promise {
 }
 
 impl Promise {
+    /// Least number of random cases per mode of which a share can be promised: with fewer, one case
+    /// is too large a share.
+    pub const LEAST_CASES: usize = 1000;
+
     /// The promise of a class.
     pub fn of(class: Class) -> Self {
         let (common_pct_f0, beyond_pct, worst_pct_f0) = match class {
