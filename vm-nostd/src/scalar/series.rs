@@ -45,20 +45,6 @@ pub(super) const fn ln_1p(x: f64) -> f64 {
     2.0 * sum
 }
 
-/// ln(1 + x) for x >= 0, up to 1e30.
-pub(super) const fn ln_1p_of(x: f64) -> f64 {
-    if x <= 1.0 {
-        return ln_1p(x);
-    }
-    // ln(1 + x) = ln x + ln(1 + 1/x), and ln x by powers of two.
-    let (mut mantissa, mut twos) = (x, 0.0);
-    while mantissa > 1.5 {
-        mantissa *= 0.5;
-        twos += core::f64::consts::LN_2;
-    }
-    twos + ln_1p(mantissa - 1.0) + ln_1p(1.0 / x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

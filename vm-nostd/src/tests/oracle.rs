@@ -43,12 +43,12 @@ fn q(value: f64) -> Fixed {
 /// Largest error of each relation, of force in F0 at full activation, in `f32`, fixed point and
 /// `f64`.
 const BOUNDS: [(&str, [f64; 3]); 6] = [
-    ("F_se", [3e-7, 6.6e-8, 6.7e-16]),
-    ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
-    ("F_pe2", [7.4e-7, 4e-7, 3.3e-15]),
-    ("FL", [1.9e-6, 1.8e-6, 1.8e-6]),
+    ("F_se", [2e-7, 6.6e-8, 6.7e-16]),
+    ("F_pe1", [8e-7, 5.3e-7, 3.9e-15]),
+    ("F_pe2", [5e-7, 4e-7, 3.3e-15]),
+    ("FL", [3.9e-6, 1.8e-6, 1.8e-6]),
     ("FV", [9.7e-7, 2.8e-6, 3.1e-15]),
-    ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
+    ("Af", [3.7e-6, 1.2e-6, 2.3e-15]),
 ];
 
 /// Time step, s; slopes by length are per tick.

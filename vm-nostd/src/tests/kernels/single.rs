@@ -49,23 +49,30 @@ pub(super) const ROWS: [Row; 18] = [
             unit.of(Kernels::ln(x).into(), f64::from(x).ln())
         },
     ),
-    row("softplus", "-87..8e37", (-87.0, 8e37), 2e-6, Unit::Mixed, |unit, place| {
+    row("softplus", "-87..3.4e38", (-87.0, f32::MAX), 4e-7, Unit::Mixed, |unit, place| {
         let x = f32_at(place);
         unit.of(Kernels::softplus(x).0.into(), softplus(x.into()))
     }),
-    row("softplus", "-87..88", (-87.0, 88.0), 2e-5, Unit::Relative, |unit, place| {
+    row("softplus", "-87..88", (-87.0, 88.0), 2.5e-6, Unit::Relative, |unit, place| {
         let x = f32_at(place);
         unit.of(Kernels::softplus(x).0.into(), softplus(x.into()))
     }),
-    row("slope of softplus", "-8e37..8e37", (-8e37, 8e37), 2e-5, Unit::Absolute, |unit, place| {
-        let x = f32_at(place);
-        unit.of(Kernels::softplus(x).1.into(), logistic(x.into()))
-    }),
-    row("1 - exp(-exp x)", "-15..3", (-15.0, 3.0), 2e-6, Unit::Relative, |unit, place| {
+    row(
+        "slope of softplus",
+        "-3.4e38..3.4e38",
+        (-f32::MAX, f32::MAX),
+        2e-5,
+        Unit::Absolute,
+        |unit, place| {
+            let x = f32_at(place);
+            unit.of(Kernels::softplus(x).1.into(), logistic(x.into()))
+        },
+    ),
+    row("1 - exp(-exp x)", "-14.8..3", (-14.8, 3.0), 4e-6, Unit::Relative, |unit, place| {
         let x = f32_at(place);
         unit.of(Kernels::weibull(x).into(), weibull(x.into()))
     }),
-    row("1 - exp(-exp x)", "-4e37..4e37", (-4e37, 4e37), 1.4e-6, Unit::Absolute, |unit, place| {
+    row("1 - exp(-exp x)", "-4e37..4e37", (-4e37, 4e37), 4e-6, Unit::Absolute, |unit, place| {
         let x = f32_at(place);
         unit.of(Kernels::weibull(x).into(), weibull(x.into()))
     }),
