@@ -12,9 +12,9 @@ use crate::tick::time_step::TimeStep;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
-    /// One substep per tick, unless the muscle rings too fast for that on a stiff tendon. For low
-    /// power: the error is a few percent of F0 for some milliseconds after a jerk, and that of the
-    /// other classes on smooth inputs.
+    /// One substep per tick, unless the muscle rings too fast or too much for that on a stiff
+    /// tendon. For low power: the error is a few percent of F0 for some milliseconds after a jerk, and some tenths
+    /// of a percent otherwise.
     Economy,
     /// Substeps of at most 0.25 ms.
     #[default]
@@ -32,9 +32,12 @@ pub(crate) struct Substeps {
     /// ringing after a jump of path velocity by 1 L_ce0/s. The error of a second-order step is
     /// proportional to its square.
     pub(crate) ringing: f64,
+    /// Greatest A with one substep, F0. The error of a substep as long as the ringing's period is
+    /// in proportion to A, whatever w. The paper's muscle has 0.056 F0.
+    pub(crate) single: f64,
 }
 
-/// Ticks at least this long have a looser tolerance, s: 1 ms less a rounding tolerance.
+/// Ticks at least this long have a looser limit, s: 1 ms less a rounding tolerance.
 const COARSE_TICK: f64 = 0.999e-3;
 /// Longest part of a tick in the fine class, s: 0.25 ms and a rounding tolerance.
 const LONGEST_PART: f64 = 0.251e-3;
@@ -52,12 +55,12 @@ impl Class {
 
     pub(crate) fn substeps(self, step: TimeStep) -> Substeps {
         match self {
-            Self::Economy => Substeps { longest: f64::MAX, ringing: f64::MAX },
+            Self::Economy => Substeps { longest: f64::MAX, ringing: f64::MAX, single: 0.06 },
             Self::Standard => {
                 let longest = if step.seconds() >= COARSE_TICK { 0.25e-3 } else { 0.15e-3 };
-                Substeps { longest, ringing: 0.35 }
+                Substeps { longest, ringing: 0.35, single: f64::MAX }
             }
-            Self::Fine => Substeps { longest: 0.063e-3, ringing: 0.15 },
+            Self::Fine => Substeps { longest: 0.063e-3, ringing: 0.15, single: f64::MAX },
         }
     }
 }
