@@ -149,10 +149,12 @@ pub(crate) const FASCICLE_DOMAIN: (f64, f64) = (0.4, 1.8);
 const RINGING_ROOM: f64 = 0.25;
 /// Number of bisections that resolve a length to the last bits of `f64`.
 const HALVINGS: usize = 60;
+/// Largest F_pe2, F0. It is weighted by Af, which `f32` resolves to 4e-7.
+const MOST_COMPRESSION: f64 = 1000.0;
 /// Names of derived quantities that are refused.
+const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
 const SHORTEST_LENGTH: &str = "force_velocity.shortening: shortest length (L_ce0) without a pole";
 /// Names of derived quantities that fixed point refuses.
-const COMPRESSION: &str = "compression.strength: force at the shortest length, F0";
 const PARALLEL: &str = "parallel.stiffness: force of the longest fascicles, F0";
 const PARALLEL_TOE: &str = "parallel.toe: longest fascicles beyond slack, toes";
 const TOE_FORCE: &str = "tendon.toe: stiffness times toe, F0";
@@ -264,6 +266,8 @@ impl<const N: usize> MuscleParams<N> {
             within(LONGEST_LENGTH, longest, SHORTEST_UPPER_EDGE, most)
         })?;
         let (shortest, longest) = self.fascicle_domain();
+        let compression = self.elements.compression.force(shortest);
+        within(COMPRESSION, compression, -MOST_COMPRESSION, 0.0)?;
         self.each_fiber(|t| t.force_velocity.validate_monotone(shortest, longest))?;
 
         let path_at = |maximum: f64| {

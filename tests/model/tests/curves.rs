@@ -9,11 +9,11 @@ use vm_nostd_cores::MUSCLE;
 /// `f32`, one in fixed point.
 const BOUNDS: [(&str, [f64; 3]); 6] = [
     ("F_se", [1.8e-5, 9e-6, 4e-14]),
-    ("F_pe1", [2.6e-6, 5.3e-7, 3.9e-15]),
-    ("F_pe2", [7.4e-7, 4e-7, 3.3e-15]),
-    ("FL", [1.9e-6, 1.8e-6, 1.8e-6]),
+    ("F_pe1", [8e-7, 5.3e-7, 3.9e-15]),
+    ("F_pe2", [5e-7, 4e-7, 3.3e-15]),
+    ("FL", [3.9e-6, 1.8e-6, 1.8e-6]),
     ("FV", [9.7e-7, 2.8e-6, 3.1e-15]),
-    ("Af", [1.9e-6, 1.2e-6, 2.3e-15]),
+    ("Af", [3.7e-6, 1.2e-6, 2.3e-15]),
 ];
 
 /// Rounds to a number that all arithmetics represent exactly.

@@ -2,7 +2,7 @@
 
 use model_tests::muscles::{Discrete, Mode};
 use vm_nostd::{
-    EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits, Muscle,
+    Class, EffectiveLength, FascicleLength, Fixed, Input, IntramuscularFes, MotorUnits, Muscle,
     MuscleParams, NaturalContinuous, NaturalDiscrete, Recruitment, RestoreError, Scalar, State,
     TimeStep, UnitSizes,
 };
@@ -134,4 +134,33 @@ fn motor_units_are_part_of_the_fingerprint() {
         &words,
         "their number",
     );
+}
+
+/// On a path that jumps across its whole range every tick, short fascicles exceed the clamped
+/// velocity within a tick.
+fn restores_what_a_step_leaves<S: Scalar>(class: Class) {
+    let mut params = Params { class, fascicle_length: 0.01, tendon_length: 0.001, ..MUSCLE };
+    params.max_path_length += (1.2 - params.maximum_fascicle_length()) * params.fascicle_length;
+    let muscle =
+        built::<S, IntramuscularFes>(&params, TimeStep::from_seconds(1e-4).expect("a time step"));
+    let ends: [S::PathLength; 2] = muscle.path_length_range().into();
+    let mut state = muscle.rest(ends[0]).expect("in range");
+    let input = |tick: usize| Input {
+        activation: S::from_f64(0.5),
+        path_length: ends[(tick + 1) % 2],
+        stimulation_frequency: S::quantity(30.0),
+    };
+    for tick in 0..50 {
+        muscle.step(&mut state, input(tick));
+        assert_eq!(muscle.restore(muscle.save(&state)), Ok(state), "{class:?}, tick {tick}");
+    }
+}
+
+#[test]
+fn every_state_that_a_step_leaves_is_restored() {
+    for class in [Class::Economy, Class::Standard, Class::Fine] {
+        restores_what_a_step_leaves::<f32>(class);
+        restores_what_a_step_leaves::<f64>(class);
+        restores_what_a_step_leaves::<Fixed>(class);
+    }
 }

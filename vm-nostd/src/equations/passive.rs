@@ -29,7 +29,8 @@ pub struct ParallelParams {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CompressionParams {
-    /// Strength c_2, F0; -1 to 0.
+    /// Strength c_2, F0; -1 to 0, and such that F_pe2 is at least -1,000 F0 at the shortest length
+    /// of [`MuscleParams::fascicle_domain`](crate::MuscleParams::fascicle_domain).
     #[doc(alias = "c2")]
     pub strength: f64,
     /// Steepness k_2, 1/L_ce0; -40 to -1.
@@ -149,8 +150,9 @@ summed! {
     }
 }
 
-/// Lower bound of |c2| in its logarithm, F0; negligible as a force.
-const NO_STRENGTH: f64 = 1e-9;
+/// Lower bound of |c2| in its logarithm, F0: negligible even after growing by e^24, as it does with
+/// the steepest k2 from the greatest Lr2 to the shortest fascicles.
+const NO_STRENGTH: f64 = 1e-24;
 
 impl<S: Scalar> Compression<S> {
     pub(crate) fn new(params: &CompressionParams, step: TimeStep) -> Self {
@@ -170,5 +172,28 @@ impl<S: Scalar> Compression<S> {
         let grown = (fascicle_length - self.unit_length).scaled(&self.steepness).exp();
         let force = self.strength - grown;
         if force < S::ZERO { (force, grown.scaled(&self.slope)) } else { (S::ZERO, S::ZERO) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::fixed::Fixed;
+
+    /// F_pe2 with the steepest growth, at 0.4 L_ce0.
+    fn compression<S: Scalar>(strength: f64) -> f64 {
+        let params = CompressionParams { strength, steepness: -40.0, onset_length: 1.0 };
+        Compression::<S>::new(&params, TimeStep::MILLISECOND).at(S::from_f64(0.4)).0.to_f64()
+    }
+
+    #[test]
+    fn without_strength_nothing_is_compressed() {
+        for found in [compression::<f32>(0.0), compression::<Fixed>(0.0), compression::<f64>(0.0)] {
+            assert!(found.abs() < 1e-12, "{found} F0");
+        }
+        // 1e-12 (1 - e^24)
+        for found in [compression::<f32>(-1e-12), compression::<f64>(-1e-12)] {
+            assert!((found / -0.026_489 - 1.0).abs() < 1e-4, "{found} F0");
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! Yield of slow fibres: dY/dt = (1 - cY (1 - exp(-|V|/VY)) - Y)/TY.
 
 use crate::error::{ParameterError, within};
-use crate::params::limits::MAXIMUM_SPEED;
 use crate::saved::{RestoreError, Saved};
 use crate::scalar::Scalar;
 use crate::summed::summed;
@@ -52,10 +51,8 @@ impl<S: Scalar> Speed<S> {
     pub(crate) fn restored<I: Iterator<Item = S::Bits>>(
         saved: &mut Saved<I>,
     ) -> Result<Self, RestoreError> {
-        // MAXIMUM_SPEED bounds the mid-substep speed. The mean can be higher by a few percent, and
-        // the variance is below the square of the mean's bound.
-        let range = Range::new((0.0, 2.0 * MAXIMUM_SPEED), S::from_f64);
-        let mut number = || saved.number(|value| range.contains(value));
+        // Nothing else bounds them: where the velocity is clamped, the mean of a substep is not.
+        let mut number = || saved.number(|value: S| value >= S::ZERO && value.is_finite());
         Ok(Self { mean: number()?, variance: number()? })
     }
 }
