@@ -120,7 +120,7 @@ typedef struct VmFesF64 VmFesF64;
 #define VM_CLASS_STANDARD 0
 
 /**
- * Accuracy class: one substep a tick, unless the muscle rings too fast for that.
+ * Accuracy class: one substep a tick, unless the muscle rings too fast or too much for that.
  */
 #define VM_CLASS_ECONOMY 1
 

@@ -9,7 +9,7 @@ use model::{
 
 /// Accuracy class: substeps of 0.25 ms or less; the default.
 pub const VM_CLASS_STANDARD: u32 = 0;
-/// Accuracy class: one substep a tick, unless the muscle rings too fast for that.
+/// Accuracy class: one substep a tick, unless the muscle rings too fast or too much for that.
 pub const VM_CLASS_ECONOMY: u32 = 1;
 /// Accuracy class: substeps of 0.063 ms or less, and ticks longer than 0.25 ms in equal parts.
 pub const VM_CLASS_FINE: u32 = 2;
