@@ -13,8 +13,8 @@ use crate::tick::time_step::TimeStep;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
     /// One substep per tick, unless the muscle rings too fast or too much for that on a stiff
-    /// tendon. For low power: the error is a few percent of F0 for some milliseconds after a jerk, and some tenths
-    /// of a percent otherwise.
+    /// tendon. For low power: the error is a few percent of F0 for some milliseconds after a jerk,
+    /// and some tenths of a percent otherwise.
     Economy,
     /// Substeps of at most 0.25 ms.
     #[default]

@@ -112,7 +112,7 @@ macro_rules! meetings {
     }};
 }
 
-/// The cubic with the values of [`meetings`]. Coefficients are in order of powers, constant
+/// The cubic with the values of [`meetings!`]. Coefficients are in order of powers, constant
 /// first; the argument is 0..1 across the piece.
 const fn cubic([start, first, second, end]: [f64; 4]) -> [f32; 4] {
     let rise = end - start;
@@ -165,8 +165,8 @@ pub(super) fn softplus(x: f32) -> (f32, f32) {
     if distance < LONGEST_TAIL {
         let place = distance * SOFTPLUS_PER_UNIT as f32;
         let index = place as u32;
-        let pieces = &SOFTPLUS[index as usize % PIECES];
-        let (tail, slope) = cubic_at(pieces, place - index as f32);
+        let piece = &SOFTPLUS[index as usize % PIECES];
+        let (tail, slope) = cubic_at(piece, place - index as f32);
         let slope = slope * -(SOFTPLUS_PER_UNIT as f32);
         let above = 0.5 * (x + distance);
         return (above + tail, 0.5 + (0.5 - slope).copysign(x));
